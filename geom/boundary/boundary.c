@@ -20,5 +20,6 @@ void cag_boundary_free(CagBoundary *b) {
   cag_free(b->order);
   cag_free(b->name);
   cag_free(b->body);
+  cag_mesh_release(b->mesh);
   *b = (CagBoundary){0};
 }

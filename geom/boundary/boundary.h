@@ -9,6 +9,7 @@
 #define CAG_GEOM_BOUNDARY_BOUNDARY_H
 
 #include "geom/curve/curve.h"
+#include "geom/mesh/mesh.h"
 #include "geom/surface/surface.h"
 
 // The kinds of carriers, with the parameters of ISO 10303-42, except for v of cones, which is the
@@ -77,6 +78,8 @@ typedef struct CagBoundary {
   double color[3];     // linear red, green, blue
   unsigned char *body; // the kernel's own form of the solid, by which it is asked for again
   size_t body_length;
+  CagMesh *mesh; // of a boundary that was found from a mesh: this one, its labels are the faces + 1
+                 // (0: none). The boundary is measured and meshed by it. Else NULL
 } CagBoundary;
 
 void cag_boundary_free(CagBoundary *b);

@@ -10,6 +10,15 @@
 
 #define TURN (2 * M_PI)
 
+static const char *const KINDS[] = {
+    [CAG_CARRIER_NONE] = "none",         [CAG_CARRIER_PLANE] = "plane",
+    [CAG_CARRIER_CYLINDER] = "cylinder", [CAG_CARRIER_CONE] = "cone",
+    [CAG_CARRIER_SPHERE] = "sphere",     [CAG_CARRIER_TORUS] = "torus",
+    [CAG_CARRIER_SPLINE] = "spline",     [CAG_CARRIER_REVOLVED] = "revolved",
+    [CAG_CARRIER_EXTRUDED] = "extruded"};
+
+const char *cag_carrier_name(const CagCarrier *c) { return KINDS[c->kind]; }
+
 bool cag_carrier_is_analytic(const CagCarrier *c) {
   return c->kind >= CAG_CARRIER_PLANE && c->kind <= CAG_CARRIER_TORUS;
 }

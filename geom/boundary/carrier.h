@@ -22,6 +22,8 @@ CagStatus cag_carrier_eval(const CagCarrier *c, double u, double v, CagCarrierPo
                            CagError *err);
 // The unit vector along S_u x S_v; zero where there is none.
 CagStatus cag_carrier_normal(const CagCarrier *c, double u, double v, CagVec3 *out, CagError *err);
+// The name of its kind: "plane" "cylinder" "cone" "sphere" "torus" "spline" "revolved" "extruded".
+const char *cag_carrier_name(const CagCarrier *c);
 // Whether the carrier is a plane, cylinder, cone, sphere, or torus.
 bool cag_carrier_is_analytic(const CagCarrier *c);
 // Whether u (direction 0) or v (1) is an angle, with the period 2 pi.

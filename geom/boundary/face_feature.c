@@ -23,13 +23,6 @@
 // The step of difference quotients of the derivatives, as a fraction of the domain.
 #define DIFFERENCE 1e-5
 
-static const char *const KINDS[] = {
-    [CAG_CARRIER_NONE] = "none",         [CAG_CARRIER_PLANE] = "plane",
-    [CAG_CARRIER_CYLINDER] = "cylinder", [CAG_CARRIER_CONE] = "cone",
-    [CAG_CARRIER_SPHERE] = "sphere",     [CAG_CARRIER_TORUS] = "torus",
-    [CAG_CARRIER_SPLINE] = "spline",     [CAG_CARRIER_REVOLVED] = "revolved",
-    [CAG_CARRIER_EXTRUDED] = "extruded"};
-
 static double coordinate(CagVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
 static CagVec3 axis_of(int k) { return cag_vec3(k == 0, k == 1, k == 2); }
@@ -326,7 +319,7 @@ CagStatus cag_face_feature(const CagBoundary *b, size_t face, const CagBounds *b
   const CagBoundaryFace *f = &b->faces[face];
   const bool plane = f->carrier.kind == CAG_CARRIER_PLANE;
   CagFaceOutline outline = {.boundary = b, .face = f};
-  *out = (CagFaceFeature){.kind = KINDS[f->carrier.kind]};
+  *out = (CagFaceFeature){.kind = cag_carrier_name(&f->carrier)};
   CagStatus status = cag_boundary_face_area(b, face, &out->area, &out->center, err);
   if (!status && !plane) status = cag_face_outline(b, face, &outline, err);
   if (!status) status = face_bounds(&outline, boxes, &out->bounds, err);
@@ -357,6 +350,10 @@ CagStatus cag_boundary_edge_boxes(const CagBoundary *b, CagBounds **out, CagErro
 CagStatus cag_boundary_bounds(const CagBoundary *b, CagBounds *out, CagError *err) {
   CagBounds *boxes;
   CagBounds all = CAG_BOUNDS_EMPTY;
+  if (b->mesh) {
+    *out = cag_mesh_bounds(b->mesh);
+    return CAG_OK;
+  }
   CagStatus status = cag_boundary_edge_boxes(b, &boxes, err);
   if (status) return status;
   for (size_t f = 0; !status && f < b->face_count; f++) {

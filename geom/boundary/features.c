@@ -9,6 +9,7 @@
 #include "base/stop.h"
 #include "geom/boundary/carrier.h"
 #include "geom/boundary/face_feature.h"
+#include "geom/boundary/meshed.h"
 #include "geom/curve/family.h"
 #include "geom/linalg/tolerance.h"
 
@@ -238,7 +239,8 @@ CagStatus cag_boundary_features(const CagBoundary *b, CagFeatures *out, CagError
   CagStatus status = f.faces ? sort_uses(&w, err) : cag_fail_memory(err);
   if (!status) status = cag_boundary_edge_boxes(b, &w.boxes, err);
   for (size_t i = 0; !status && i < b->face_count; i++)
-    status = cag_face_feature(b, i, w.boxes, &f.faces[i], err);
+    status = b->mesh ? cag_meshed_face(b, i, &f.faces[i], err)
+                     : cag_face_feature(b, i, w.boxes, &f.faces[i], err);
   if (!status) status = collect_edges(&w, err);
   if (!status) status = collect_corners(&w, err);
   work_free(&w);

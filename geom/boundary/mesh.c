@@ -14,6 +14,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/stop.h"
+#include "geom/boundary/meshed.h"
 #include "geom/boundary/patch.h"
 #include "geom/tessellate/within.h"
 
@@ -464,14 +465,18 @@ static CagStatus mesh_faces(Mesher *m, CagMesh **out, CagError *err) {
   return status ? status : join_faces(m, out, err);
 }
 
-static void count_triangles(const Mesher *m, size_t *first) {
-  first[0] = 0;
+static CagStatus label_faces(const Mesher *m, CagMesh *mesh, CagError *err) {
+  mesh->labels = cag_malloc((mesh->triangle_count + 1) * sizeof *mesh->labels);
+  if (!mesh->labels) return cag_fail_memory(err);
+  size_t t = 0;
   for (size_t f = 0; f < m->b->face_count; f++)
-    first[f + 1] = first[f] + m->meshes[f]->triangle_count;
+    for (size_t k = 0; k < m->meshes[f]->triangle_count; k++) mesh->labels[t++] = (uint32_t)f + 1;
+  return CAG_OK;
 }
 
-CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, size_t *first,
+CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, bool labeled,
                             CagMesh **out, CagError *err) {
+  if (b->mesh) return cag_meshed_copy(b, labeled, out, err);
   Mesher m = {.b = b, .how = *how, .edge = *how};
   CagMesh *mesh = NULL;
   bool watertight = false;
@@ -486,7 +491,7 @@ CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, si
     if (!status) status = cag_mesh_watertight(mesh, &watertight, edge, err);
     else if (err->id == CAG_ERR_polygon_self_intersection && k + 1 < TRIES) status = CAG_OK;
   }
-  if (!status && first) count_triangles(&m, first);
+  if (!status && labeled) status = label_faces(&m, mesh, err);
   mesher_free(&m);
   if (!status && !watertight)
     status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,

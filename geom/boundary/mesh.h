@@ -12,8 +12,8 @@
 // divided more finely. Fails with "no-boundary" if that does not help, or if the mesh is not
 // watertight.
 //
-//   first  for each face, its first triangle, and at the end the number of all; may be NULL
-CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, size_t *first,
+//   labeled  the label of each triangle is the number of its face, counting from 1
+CagStatus cag_boundary_mesh(const CagBoundary *b, const CagTessellation *how, bool labeled,
                             CagMesh **out, CagError *err);
 
 #endif

@@ -111,6 +111,7 @@ static CagStatus copy_boundary(const CagBoundary *b, CagBoundary *out, CagError 
   out->order_room = b->order_count;
   out->body = NULL;
   out->body_length = 0;
+  out->mesh = NULL;
   if (failed || !out->name) {
     // Nothing is shared yet.
     out->edge_count = out->use_count = out->face_count = 0;
@@ -189,6 +190,7 @@ CagStatus cag_boundary_moved(const CagBoundary *b, const CagTransform *similarit
   moved.volume *= m.scale * m.scale * m.scale;
   moved.area *= m.scale * m.scale;
   moved.centroid = cag_transform_point(similarity, b->centroid);
+  if (!status && b->mesh) status = cag_mesh_transform(b->mesh, similarity, &moved.mesh, err);
   if (status) cag_boundary_free(&moved);
   else *out = moved;
   return status;

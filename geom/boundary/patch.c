@@ -283,11 +283,40 @@ static CagStatus region_of(const CagBoundary *b, const CagBoundaryFace *f, const
   return status;
 }
 
+// The face of a boundary with a mesh. Its loops may be incomplete, or have no seams: a curved face is
+// the whole surface over its domain.
+static CagStatus meshed_surface(const CagBoundary *b, const CagBoundaryFace *f, const CagPatch *p,
+                                CagSurface **out, CagError *err) {
+  CagRegion *region = NULL;
+  if (p->whole) {
+    *out = cag_surface_retain(p->whole);
+    return CAG_OK;
+  }
+  CagStatus status = f->count > 0 ? region_of(b, f, p, &region, err) : CAG_OK;
+  if (!status && region) {
+    status = cag_surface_planar(region, &p->plane, out, err);
+    cag_region_release(region);
+    return status;
+  }
+  if (cag_is_final(status)) return status;
+  const double *d = f->domain, sign = f->reversed ? -1 : 1;
+  const CagVec3 x = column(&p->plane, 0), y = column(&p->plane, 1);
+  const CagVec3 corner =
+      cag_madd(cag_madd(column(&p->plane, 3), d[0], x), sign * d[f->reversed ? 3 : 2], y);
+  return cag_surface_parallelogram(corner, cag_scaled(x, d[1] - d[0]), cag_scaled(y, d[3] - d[2]),
+                                   out, err);
+}
+
 CagStatus cag_boundary_surface(const CagBoundary *b, size_t face, CagSurface **out, CagError *err) {
   CagPatch p;
   CagRegion *region = NULL;
   CagStatus status = cag_patch_of_face(b, face, &p, err);
   if (status) return status;
+  if (b->mesh) {
+    status = meshed_surface(b, &b->faces[face], &p, out, err);
+    cag_patch_release(&p);
+    return status;
+  }
   status = region_of(b, &b->faces[face], &p, &region, err);
   if (!status)
     status = p.whole ? cag_surface_trimmed(p.whole, region, out, err)

@@ -62,6 +62,7 @@ void cag_exact_digest(const CagExact *e, CagDigest *d) {
     cag_digest_word(d, b->face_count);
     cag_digest_bytes(d, b->corners, b->corner_count * sizeof *b->corners);
     cag_digest_bytes(d, b->body, b->body_length);
+    if (b->mesh) cag_mesh_digest(b->mesh, d);
   }
 }
 
@@ -254,7 +255,7 @@ static CagStatus mesh_parts(const CagExact *e, const CagTessellation *how, CagMe
   size_t n = 0;
   CagStatus status = meshes ? CAG_OK : cag_fail_memory(err);
   while (!status && n < e->count) {
-    status = cag_boundary_mesh(&e->parts[n], how, NULL, &meshes[n], err);
+    status = cag_boundary_mesh(&e->parts[n], how, false, &meshes[n], err);
     if (!status) n++;
   }
   if (!status) status = cag_mesh_append(meshes, n, out, err);

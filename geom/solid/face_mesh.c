@@ -30,22 +30,18 @@ static CagStatus append_mesh(CagFaceMesh *all, CagMesh *m, CagError *err) {
 
 static CagStatus append_part(CagFaceMesh *all, const CagBoundary *b, size_t part,
                              const CagTessellation *how, CagError *err) {
-  size_t *first = cag_calloc(b->face_count + 1, sizeof *first);
   const size_t before = all->mesh ? all->mesh->triangle_count : 0;
   CagMesh *m = NULL;
-  CagStatus status = first ? cag_boundary_mesh(b, how, first, &m, err) : cag_fail_memory(err);
-  if (!status) status = append_mesh(all, m, err);
-  if (!status) {
-    CagSolidFace *longer =
-        cag_realloc(all->face, (before + first[b->face_count] + 1) * sizeof *longer);
-    if (longer) all->face = longer;
-    else status = cag_fail_memory(err);
-  }
-  for (size_t f = 0; !status && f < b->face_count; f++)
-    for (size_t t = first[f]; t < first[f + 1]; t++)
-      all->face[before + t] = (CagSolidFace){part, f};
+  CagStatus status = cag_boundary_mesh(b, how, true, &m, err);
+  if (status) return status;
+  CagSolidFace *longer = cag_realloc(all->face, (before + m->triangle_count + 1) * sizeof *longer);
+  if (longer) {
+    all->face = longer;
+    for (size_t t = 0; t < m->triangle_count; t++)
+      longer[before + t] = (CagSolidFace){part, (size_t)m->labels[t] - 1};
+    status = append_mesh(all, m, err);
+  } else status = cag_fail_memory(err);
   cag_mesh_release(m);
-  cag_free(first);
   return status;
 }
 

@@ -11,6 +11,7 @@
 #include "geom/mesh/distance.h"
 #include "geom/solid/roll_body.h"
 #include "geom/solid/roll_shells.h"
+#include "geom/solid/roll_zone.h"
 
 // Bodies reach beyond the faces by this fraction of the size of a section, and by this multiple of
 // the tolerance and of the bulge of faces.
@@ -61,7 +62,7 @@ static CagStatus section_within(CagRollPlan *p, size_t pick, double part, CagRol
 CagStatus cag_roll_contacts(CagRollPlan *p, const CagMesh *solid, CagError *err) {
   CagStatus status = CAG_OK;
   for (size_t i = 0; i < p->pick_count && p->unfit == CAG_ROLL_NONE; i++)
-    for (int k = 1; !status && k < 4; k++) {
+    for (int k = 1; !status && k < 4 && !p->picks[i].zoned; k++) {
       CagRollSection s;
       status = cag_stop_check(err);
       if (!status) status = section_within(p, i, k / 4.0, &s, err);
@@ -72,16 +73,30 @@ CagStatus cag_roll_contacts(CagRollPlan *p, const CagMesh *solid, CagError *err)
   return status;
 }
 
+// Whether the result passes through the contacts and the arc at a fraction of an edge.
+static CagStatus passes_section(CagRollPlan *p, size_t pick, double part, const CagMesh *result,
+                                bool *out, CagError *err) {
+  CagRollSection s;
+  CagStatus status = cag_stop_check(err);
+  *out = false;
+  if (!status) status = section_within(p, pick, part, &s, err);
+  if (status || p->unfit != CAG_ROLL_NONE) return status;
+  const CagVec3 points[3] = {s.contact[0], s.contact[1], section_middle(&s)};
+  *out = true;
+  for (int k = 0; *out && k < 3; k++)
+    *out = cag_roll_is_near(result, points[k], NEAR * p->tolerance);
+  return CAG_OK;
+}
+
+// The rounding of another edge may reach that of an edge, but not everywhere.
 static CagStatus check_middles(CagRollPlan *p, const CagMesh *result, CagError *err) {
+  static const double PARTS[] = {0.5, 0.25, 0.75};
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < p->pick_count && p->unfit == CAG_ROLL_NONE; i++) {
-    CagRollSection s;
-    status = cag_stop_check(err);
-    if (!status) status = section_within(p, i, 0.5, &s, err);
-    if (status || p->unfit != CAG_ROLL_NONE) return status;
-    const CagVec3 points[3] = {s.contact[0], s.contact[1], section_middle(&s)};
-    for (int k = 0; k < 3; k++)
-      if (!cag_roll_is_near(result, points[k], NEAR * p->tolerance)) p->unfit = i;
+    bool passes = p->picks[i].zoned;
+    for (int k = 0; !status && !passes && k < 3 && p->unfit == CAG_ROLL_NONE; k++)
+      status = passes_section(p, i, PARTS[k], result, &passes, err);
+    if (!status && !passes) p->unfit = i;
   }
   return status;
 }
@@ -139,23 +154,6 @@ static CagStatus find_stops(const CagRollPlan *p, CagRollTip tip, CagVec3 leavin
   return status;
 }
 
-// Fails if another edge of the same bend is rounded where a chain ends in a face.
-static CagStatus end_is_free(const CagRollPlan *p, CagRollTip tip, CagError *err) {
-  const CagRollPick *pick = &p->picks[tip.pick];
-  for (size_t i = 0; i < p->pick_count; i++)
-    for (int end = 0; end < 2; end++) {
-      const CagRollPick *other = &p->picks[i];
-      const CagVec3 at = p->parts[pick->part].b->corners[pick->corner[tip.end]];
-      if ((i != tip.pick || end != tip.end) && other->part == pick->part && !other->closed &&
-          other->corner[end] == pick->corner[tip.end] && other->e.convex == pick->e.convex)
-        return cag_fail(
-            err, CAG_E_UNSUPPORTED, CAG_ERR_no_boundary, "", -1,
-            "rounded edges meet at [%.6g, %.6g, %.6g] where the ball would leave a face", at.x,
-            at.y, at.z);
-    }
-  return CAG_OK;
-}
-
 // Moves the points of the last ring along the edge: to the faces on which the body ends, or beyond
 // those through which it leaves. *fits: whether the ring stays beyond the one before it.
 static CagStatus end_ring(const CagRollPlan *p, CagRollTip tip, double lift, CagVec3 *ring,
@@ -164,7 +162,6 @@ static CagStatus end_ring(const CagRollPlan *p, CagRollTip tip, double lift, Cag
   Stops stops;
   CagStatus status = cag_roll_leaving(&p->picks[tip.pick], tip.end, &leaving, err);
   if (!status) status = find_stops(p, tip, leaving, &stops, err);
-  if (!status && stops.flush) status = end_is_free(p, tip, err);
   for (size_t i = 0; !status && i < size; i++) {
     double move = stops.flush ? INFINITY : 0;
     for (size_t k = 0; !status && k < stops.count; k++) {
@@ -227,6 +224,34 @@ static size_t common_arc(const CagRollPlan *p, double *lift) {
   return arc;
 }
 
+// Ends the rings of a chain on one side. Rings that the end would pass are left out.
+static CagStatus end_rings(const CagRollPlan *p, CagRollTip tip, int end, double lift,
+                           CagVec3 *rings, size_t size, size_t *first, size_t *count, bool *fits,
+                           CagError *err) {
+  const size_t bytes = size * sizeof *rings, whole = *count, start = *first;
+  CagVec3 *own = cag_malloc(bytes + sizeof *own);
+  CagStatus status = CAG_OK;
+  if (!own) return cag_fail_memory(err);
+  memcpy(own, rings + size * (end ? *first + *count - 1 : *first), bytes);
+  for (*fits = false; !status && !*fits && *count >= 2;) {
+    CagVec3 *last = rings + size * (end ? *first + *count - 1 : *first);
+    memcpy(last, own, bytes);
+    *fits = true;
+    status = end_ring(p, tip, lift, last, end ? last - size : last + size, size, fits, err);
+    if (status || *fits) break;
+    --*count;
+    if (!end) ++*first;
+  }
+  if (!status && !*fits) { // the body ends where the edge does
+    *first = start;
+    *count = whole;
+    memcpy(rings + size * (end ? *first + *count - 1 : *first), own, bytes);
+    *fits = true;
+  }
+  cag_free(own);
+  return status;
+}
+
 static CagStatus chain_body(CagRollPlan *p, const CagRollChain *c, size_t arc, double lift,
                             Bodies *out, CagError *err) {
   const size_t size = CAG_ROLL_RING(arc);
@@ -234,15 +259,16 @@ static CagStatus chain_body(CagRollPlan *p, const CagRollChain *c, size_t arc, d
   CagStatus status = rings ? CAG_OK : cag_fail_memory(err);
   CagMesh *m;
   bool fits = true;
+  size_t first = 0, count = c->count;
   for (size_t i = 0; rings && i < c->count; i++)
     cag_roll_ring(&p->sections[c->first + i], arc, lift, rings + size * i);
-  for (int k = 0; !status && !c->closed && k < 2; k++) {
+  for (int k = 0; !status && fits && !c->closed && k < 2; k++) {
     if (p->picks[c->tips[k].pick].ball[c->tips[k].end]) continue;
-    CagVec3 *ring = rings + (k ? size * (c->count - 1) : 0);
-    status = end_ring(p, c->tips[k], lift, ring, k ? ring - size : ring + size, size, &fits, err);
+    status = end_rings(p, c->tips[k], k, lift, rings, size, &first, &count, &fits, err);
   }
   if (!status && !fits) p->unfit = c->tips[0].pick;
-  if (!status && fits) status = cag_roll_sweep(rings, size, c->count, c->closed, &m, err);
+  if (!status && fits)
+    status = cag_roll_sweep(rings + size * first, size, count, c->closed, &m, err);
   if (!status && fits) add_body(out, m, p->picks[c->tips[0].pick].e.convex, c->level);
   cag_free(rings);
   return status;
@@ -279,6 +305,8 @@ static CagStatus all_bodies(CagRollPlan *p, Bodies *out, CagError *err) {
   }
   for (size_t i = 0; !status && i < p->ball_count && p->unfit == CAG_ROLL_NONE; i++)
     status = ball_body(p, &p->balls[i], arc, lift, out, err);
+  for (size_t i = 0; i < p->zone_count; i++)
+    *(p->zones[i].convex ? &out->removed : &out->added) += p->zones[i].most;
   return status;
 }
 
@@ -323,16 +351,31 @@ static CagStatus check_volume(const Bodies *b, const CagMesh *before, const CagM
                   "rounding changes the volume from %.9g to %.9g, which cannot be", from, to);
 }
 
-// Applies the bodies level by level. Replaces *mesh.
-static CagStatus apply_bodies(const CagRollPlan *p, const Bodies *b, CagMesh **mesh,
-                              CagError *err) {
+// Rounds within all zones: at concave edges first, so that a ball rolls over their fillets.
+static CagStatus apply_zones(CagRollPlan *p, CagMesh **mesh, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (int convex = 0; convex < 2; convex++)
+    for (size_t i = 0; !status && i < p->zone_count && p->unfit == CAG_ROLL_NONE; i++) {
+      const CagRollZone *z = &p->zones[i];
+      bool fits = true;
+      if (z->convex != (convex == 1)) continue;
+      status = cag_stop_check(err);
+      if (!status) status = cag_roll_apply_zone(z, p->tolerance, mesh, &fits, err);
+      if (!status && !fits) p->unfit = z->pick;
+    }
+  return status;
+}
+
+// Applies the bodies level by level, then the zones. Replaces *mesh.
+static CagStatus apply_bodies(CagRollPlan *p, const Bodies *b, CagMesh **mesh, CagError *err) {
   CagMesh *solid = cag_mesh_retain(*mesh);
   CagMesh *clean;
   CagStatus status = CAG_OK;
   for (size_t level = 0, done = 0; !status && done < b->count; level++)
     for (int k = 0; !status && k < 2; k++)
       status = combine_bodies(b, level, k == 0, mesh, &done, err);
-  if (!status) status = check_volume(b, solid, *mesh, err);
+  if (!status) status = apply_zones(p, mesh, err);
+  if (!status && p->unfit == CAG_ROLL_NONE) status = check_volume(b, solid, *mesh, err);
   if (!status) status = cag_roll_drop_thin_shells(*mesh, p->tolerance, &clean, err);
   if (!status) {
     cag_mesh_release(*mesh);

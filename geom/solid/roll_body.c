@@ -103,8 +103,8 @@ static CagStatus add_polygon(Builder *b, const size_t *corners, size_t n, bool r
   }
   CagStatus status = cag_triangulate(xy, &n, 1, &found, &count, err);
   cag_free(xy);
-  if (status) return status;
-  if (count != n - 2) {
+  if (cag_is_final(status)) return status;
+  if (status || count != n - 2) {
     cag_free(found);
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
                     "a section of the rounding crosses itself");

@@ -13,7 +13,7 @@
 #include "geom/solid/roll_pivot.h"
 
 // Edges continue each other smoothly if their tangents differ by less, in radians.
-#define SMOOTH_JOINT 1e-4
+#define SMOOTH_JOINT 1e-2
 // Halvings of the parameters between neighboring sections.
 #define HALVINGS 12
 // The largest turn of the tangent between neighboring sections, in radians.
@@ -27,6 +27,7 @@ void cag_roll_plan_free(CagRollPlan *p) {
   cag_free(p->chains);
   cag_free(p->balls);
   cag_free(p->pivots);
+  cag_free(p->zones);
   *p = (CagRollPlan){0};
 }
 
@@ -318,7 +319,7 @@ static CagStatus start_pick(CagRollPick *pick, CagError *err) {
   const CagCurve *c = pick->e.curve;
   CagVec3 leaving[2];
   CagStatus status = CAG_OK;
-  pick->used = false;
+  pick->used = pick->zoned = false;
   for (int k = 0; !status && k < 2; k++) {
     pick->ball[k] = false;
     pick->pivot[k] = 0;
@@ -332,10 +333,12 @@ static CagStatus start_pick(CagRollPick *pick, CagError *err) {
 }
 
 CagStatus cag_roll_plan(const CagRollPart *parts, size_t part_count, double tolerance,
-                        CagRollPick *picks, size_t n, CagRollPlan *out, CagError *err) {
+                        CagRollCorners corners, CagRollPick *picks, size_t n, CagRollPlan *out,
+                        CagError *err) {
   CagRollPlan p = {.parts = parts, .part_count = part_count, .tolerance = tolerance};
   CagStatus status = CAG_OK;
   p.picks = picks;
+  p.corners = corners;
   p.pick_count = n;
   p.unfit = CAG_ROLL_NONE;
   p.chains = cag_calloc(n + 1, sizeof *p.chains);
@@ -343,7 +346,7 @@ CagStatus cag_roll_plan(const CagRollPart *parts, size_t part_count, double tole
   for (size_t i = 0; !status && i < n; i++) status = start_pick(&p.picks[i], err);
   if (!status) status = cag_roll_balls(&p, err);
   for (size_t i = 0; !status && p.unfit == CAG_ROLL_NONE && i < n; i++)
-    if (!p.picks[i].used) status = add_chain(&p, i, err);
+    if (!p.picks[i].used && !p.picks[i].zoned) status = add_chain(&p, i, err);
   if (!status && p.unfit == CAG_ROLL_NONE) status = order_chains(&p, err);
   if (status) cag_roll_plan_free(&p);
   else *out = p;

@@ -15,10 +15,11 @@ typedef struct CagRollPick {
   size_t part, edge, corner[2];
   CagRollEdge e;
   bool closed;       // the curve is closed and has no corner
-  bool ball[2];      // whether a corner with a ball is at the end
+  bool ball[2];      // whether a corner with a ball or a zone is at the end
   double station[2]; // the parameter of the section through the ball's center, or of the end
   double range[2];   // of the sections
   size_t pivot[2];   // the turn at the end, plus 1; 0: none
+  bool zoned;        // zones at its ends cover the edge; it has no sections
   bool used;         // belongs to a chain, ...
   size_t chain;      // ... this one
 } CagRollPick;
@@ -66,6 +67,23 @@ typedef struct CagRollPivot {
   CagVec3 contact[2];
 } CagRollPivot;
 
+// What is made of corners that no single ball rounds.
+typedef enum CagRollCorners {
+  CAG_ROLL_ZONES,  // zones where all faces are planes, else miters
+  CAG_ROLL_MITERS, // the bodies of edges run into each other
+  CAG_ROLL_BALLS   // miters; balls at both ends of an edge that pass each other do not fit
+} CagRollCorners;
+
+// A ball about a corner within which all edges of one bend are rounded by opening or closing the
+// solid (roll_zone.h): where no single ball touches all faces.
+typedef struct CagRollZone {
+  size_t part, corner, pick; // `pick`: one of its edges
+  bool convex;
+  double radius, reach; // of the ball that rolls, and of the zone
+  double most;          // the largest change of the volume
+  CagVec3 point;
+} CagRollZone;
+
 typedef struct CagRollPlan {
   const CagRollPart *parts;
   size_t part_count;
@@ -80,15 +98,19 @@ typedef struct CagRollPlan {
   size_t ball_count, ball_room;
   CagRollPivot *pivots;
   size_t pivot_count, pivot_room;
+  CagRollZone *zones;
+  size_t zone_count, zone_room;
+  CagRollCorners corners;
   size_t unfit; // the pick that does not fit, or CAG_ROLL_NONE
 } CagRollPlan;
 
 // Makes the plan for the picks, which are given with part, edge, corners, and e, and taken over
 // also if this fails. If a ball or section does not exist, the result is CAG_OK with `unfit` set.
-// Fails with "no-boundary" where rounded edges meet in a way that is not handled: convex and
-// concave ones, or different radii at a corner whose edges are all rounded.
+// Where convex and concave edges, different radii, or faces that no ball touches meet, there are
+// zones. Chamfers end there as at other corners.
 CagStatus cag_roll_plan(const CagRollPart *parts, size_t part_count, double tolerance,
-                        CagRollPick *picks, size_t n, CagRollPlan *out, CagError *err);
+                        CagRollCorners corners, CagRollPick *picks, size_t n, CagRollPlan *out,
+                        CagError *err);
 void cag_roll_plan_free(CagRollPlan *p);
 
 // The unit tangent that leaves the edge at an end.

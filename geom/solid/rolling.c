@@ -55,7 +55,8 @@ static CagStatus check_edges(const Rolling *r, CagError *err) {
 }
 
 // The plan with all sizes multiplied by a factor.
-static CagStatus scaled_plan(const Rolling *r, double factor, CagRollPlan *out, CagError *err) {
+static CagStatus scaled_plan(const Rolling *r, double factor, CagRollCorners corners,
+                             CagRollPlan *out, CagError *err) {
   CagRollPick *picks = cag_calloc(r->n + 1, sizeof *picks);
   CagStatus status = picks ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < r->n; i++) {
@@ -76,22 +77,32 @@ static CagStatus scaled_plan(const Rolling *r, double factor, CagRollPlan *out, 
     cag_free(picks);
     return status;
   }
-  return cag_roll_plan(r->parts, r->part_count, r->tolerance, picks, r->n, out, err);
+  return cag_roll_plan(r->parts, r->part_count, r->tolerance, corners, picks, r->n, out, err);
 }
 
-// Tries sizes. *unfit: the edge that does not fit, or CAG_ROLL_NONE. out: NULL for the test of
-// contacts only; otherwise set if it fits.
-static CagStatus try_factor(const Rolling *r, double factor, CagMesh **out, size_t *unfit,
-                            CagError *err) {
+static CagStatus try_plan(const Rolling *r, double factor, CagRollCorners corners, CagMesh **out,
+                          size_t *unfit, bool *zones, CagError *err) {
   CagRollPlan plan;
-  CagStatus status = scaled_plan(r, factor, &plan, err);
+  CagStatus status = scaled_plan(r, factor, corners, &plan, err);
   if (status) return status;
   if (plan.unfit == CAG_ROLL_NONE) status = cag_roll_contacts(&plan, r->mesh, err);
   if (!status && out && plan.unfit == CAG_ROLL_NONE)
     status = cag_roll_apply(&plan, r->mesh, out, err);
   *unfit = plan.unfit;
+  *zones = plan.zone_count > 0;
   cag_roll_plan_free(&plan);
   return status;
+}
+
+// Tries sizes. *unfit: the edge that does not fit, or CAG_ROLL_NONE. out: NULL for the test of
+// contacts only; otherwise set if it fits. If zones fail, edges are mitered.
+static CagStatus try_factor(const Rolling *r, double factor, CagMesh **out, size_t *unfit,
+                            CagError *err) {
+  bool zones = false;
+  if (!out) return try_plan(r, factor, CAG_ROLL_BALLS, NULL, unfit, &zones, err);
+  CagStatus status = try_plan(r, factor, CAG_ROLL_ZONES, out, unfit, &zones, err);
+  if (cag_is_final(status) || !zones || (!status && *unfit == CAG_ROLL_NONE)) return status;
+  return try_plan(r, factor, CAG_ROLL_MITERS, out, unfit, &zones, err);
 }
 
 // Finds the largest factor below 1 that fits; 0 if there is none. Errors count as not fitting,

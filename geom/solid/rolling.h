@@ -30,8 +30,9 @@ typedef struct CagRollLimit {
 
 // Rounds edges of a solid with boundaries. Edges that are smooth must not be given, none twice. At
 // a corner all of whose sharp edges are rounded with one radius, all of them convex or all concave,
-// the result has the ball's surface. Elsewhere the bodies of edges end in their faces, or beyond
-// the solid.
+// the result has the ball's surface. Where convex and concave edges or different radii meet at a
+// corner of planes, the solid near it is opened or closed by the ball (roll_zone.h). Elsewhere, or if
+// that fails, the bodies of edges end in their faces or beyond the solid, and run into each other.
 //
 //   tolerance  mm, positive: the distance of the result from the rounded solid. Where the ball
 //              touches a curved face, the line of contact may be off by sqrt(2 radius tolerance)
@@ -39,10 +40,9 @@ typedef struct CagRollLimit {
 //   limit      set if the error is "rounding-too-large"; may be NULL
 //
 // The result has the kind MESH. It is watertight, its volume differs from that of the solid by at
-// most the volumes of the bodies, and it passes through the arcs at the middles of all edges. Fails
-// with "rounding-too-large" if the sizes do not fit on the faces, and with "no-boundary" if the
-// solid has no boundary, if the edges meet in a way that is not handled (convex and concave ones,
-// or different radii, at one corner), or if the result fails this test.
+// most the volumes of the bodies, and it passes through the arc of each edge at its middle, or at a
+// quarter of it. Fails with "rounding-too-large" if the sizes do not fit on the faces, and with
+// "no-boundary" if the solid has no boundary, or if the result fails this test.
 CagStatus cag_solid_roll(const CagSolid *s, const CagRolledEdge *edges, size_t n, double tolerance,
                          CagRollLimit *limit, CagSolid **out, CagError *err);
 // The same for chamfers, whose sections are straight. Corners have no face of their own.

@@ -8,14 +8,16 @@
 
 #include "geom/solid/csg.h"
 #include "geom/solid/exact.h"
+#include "geom/solid/facets.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
 
 // The tolerance for surfaces without an exact form, as a fraction of the size.
 #define APPROXIMATE 1e-5
-// The default tolerance of meshes in place of exact results, likewise.
-#define MESHED 1e-3
+// The default tolerance of meshes in place of exact results, likewise, and that of the mesh before.
+#define MESHED 3e-4
+#define FINER 0.5
 
 static CagKernel *find_kernel(CagCall *call) {
   const CagVm *vm = call->vm;
@@ -56,14 +58,39 @@ static CagStatus compute(CagKernel *k, const CagSolid *s, CagSolid **out, CagErr
   return status;
 }
 
-CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, const CagSolid **out) {
+CagStatus cag_exacts_tolerance(CagCall *call, const CagSolid *s, double *out, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_solid_bounds(s, &box, err);
+  if (status) return status;
+  const double own = call->vm->tolerance;
+  *out = own > 0 ? own : MESHED * cag_norm(cag_sub(box.max, box.min));
+  return CAG_OK;
+}
+
+// The boundary that is found from the mesh. *out stays NULL if there is none; the kernel's error
+// then stays.
+static CagStatus compute_meshed(CagCall *call, const CagSolid *s, CagSolid **out) {
+  CagError err;
+  double tolerance;
+  CagStatus status = cag_exacts_tolerance(call, s, &tolerance, &err);
+  if (!status) status = cag_solid_facets(s, FINER * tolerance, out, &err);
+  if (!cag_is_final(status)) return CAG_OK;
+  *call->err = err;
+  return status;
+}
+
+CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, bool meshed, const CagSolid **out) {
   CagSolid *exact = NULL;
   double scale;
   *out = s;
   if (s->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&s->placement, &scale))
     return CAG_OK;
   CagKernel *k = find_kernel(call);
-  const CagStatus status = k ? compute(k, s, &exact, call->err) : cag_fail_memory(call->err);
+  CagStatus status = k ? compute(k, s, &exact, call->err) : cag_fail_memory(call->err);
+  if (status && !cag_is_final(status) && meshed) {
+    const CagStatus other = compute_meshed(call, s, &exact);
+    if (other || exact) status = other;
+  }
   if (status) return status;
   cag_hold_solid(call, exact);
   *out = exact;
@@ -72,7 +99,12 @@ CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, const CagSolid *
 
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {
   const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
-  return cag_geometry_ok(call, cag_exacts_of_solid(call, s, out));
+  return cag_geometry_ok(call, cag_exacts_of_solid(call, s, false, out));
+}
+
+bool cag_exacts_or_meshed(CagCall *call, int argument, const CagSolid **out) {
+  const CagSolid *s = CAG_AS_SHAPE(call->values[argument])->as.solid;
+  return cag_geometry_ok(call, cag_exacts_of_solid(call, s, true, out));
 }
 
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result) {
@@ -90,13 +122,6 @@ void cag_exacts_say_tier(CagCall *call, const char *tier, const char *what, size
   snprintf(label, sizeof label, "%.*s: %s; %s", (int)strcspn(signature, "("), signature, tier,
            what);
   cag_vm_trace(call, cag_number((double)count), label);
-}
-
-double cag_exacts_tolerance(CagCall *call, const CagSolid *s) {
-  CagBounds box;
-  CagError err;
-  if (call->vm->tolerance > 0) return call->vm->tolerance;
-  return cag_solid_bounds(s, &box, &err) ? 0 : MESHED * cag_norm(cag_sub(box.max, box.min));
 }
 
 bool cag_exacts_exact(CagCall *call, const struct cag_exacts_exact *a, CagValue *result) {

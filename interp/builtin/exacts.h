@@ -11,8 +11,12 @@ CagKernel *cag_exacts_kernel(CagCall *call);
 // The exact solid of an argument, whose placement is a similarity: the argument itself if it is one,
 // else its boundary, which the kernel computes. It is held by the call.
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out);
-// The same for a solid that need not be an argument, without setting the machine's error.
-CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, const CagSolid **out);
+// The same; where the kernel is missing or fails, the boundary that is found from the mesh
+// (geom/solid/facets.h).
+bool cag_exacts_or_meshed(CagCall *call, int argument, const CagSolid **out);
+// The same for a solid that need not be an argument, without setting the machine's error; meshed:
+// or the boundary that is found from the mesh.
+CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, bool meshed, const CagSolid **out);
 // Makes a solid of parts that the kernel found, whose contents it takes, and checks it
 // (cag_solid_exact_check).
 CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err);
@@ -21,8 +25,8 @@ CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result);
 // With -v, writes how a result was computed ("tier B: kernel"), and a count ("edges").
 void cag_exacts_say_tier(CagCall *call, const char *tier, const char *what, size_t count);
-// The tolerance of results that are meshes because the kernel failed (tier C): the caller's, or
-// 1/1000 of the size of the solid.
-double cag_exacts_tolerance(CagCall *call, const CagSolid *s);
+// The tolerance of results that are meshes because the kernel failed (tier C): that of the script,
+// or 3/10000 of the size of the solid.
+CagStatus cag_exacts_tolerance(CagCall *call, const CagSolid *s, double *out, CagError *err);
 
 #endif

@@ -193,17 +193,17 @@ bool cag_exacts_same_record(CagVm *vm, CagValue a, CagValue b) {
 bool cag_exacts_faces_of(CagCall *call, const struct cag_exacts_faces_of *a, CagValue *result) {
   const CagSolid *s;
   (void)a;
-  return cag_exacts_of(call, 0, &s) && cag_exacts_face_records(call, s, result);
+  return cag_exacts_or_meshed(call, 0, &s) && cag_exacts_face_records(call, s, result);
 }
 
 bool cag_exacts_edges_of(CagCall *call, const struct cag_exacts_edges_of *a, CagValue *result) {
   const CagSolid *s;
   (void)a;
-  return cag_exacts_of(call, 0, &s) && cag_exacts_edge_records(call, s, result);
+  return cag_exacts_or_meshed(call, 0, &s) && cag_exacts_edge_records(call, s, result);
 }
 
 bool cag_exacts_corners_of(CagCall *call, const struct cag_exacts_corners_of *a, CagValue *result) {
   const CagSolid *s;
   (void)a;
-  return cag_exacts_of(call, 0, &s) && cag_exacts_corner_records(call, s, result);
+  return cag_exacts_or_meshed(call, 0, &s) && cag_exacts_corner_records(call, s, result);
 }

@@ -59,10 +59,12 @@ static bool changed_result(CagCall *call, CagStatus status, CagSolid **made, Cag
 static CagStatus mesh_shell(CagCall *call, const struct cag_exacts_shell *a, CagExactParts *p,
                             const CagChosen *open, size_t n, CagSolid **out, CagError *err) {
   const CagSolid *s = p ? p->solid : a->G;
-  const double tolerance = fmin(cag_exacts_tolerance(call, s), WALL * a->thickness);
   const CagSolidFace *faces = chosen_faces(call, open, n);
-  const CagStatus status =
-      cag_solid_hollow(s, a->thickness, a->outside, faces, n, tolerance, out, err);
+  double tolerance;
+  CagStatus status = cag_exacts_tolerance(call, s, &tolerance, err);
+  if (status) return status;
+  tolerance = fmin(tolerance, WALL * a->thickness);
+  status = cag_solid_hollow(s, a->thickness, a->outside, faces, n, tolerance, out, err);
   if (!status) say_meshed(call, "offsets of the mesh", tolerance, "open faces", n);
   return status;
 }
@@ -92,12 +94,16 @@ bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue 
   CagChosen *open = NULL;
   CagError err;
   size_t n = 0;
-  CagStatus status = cag_exacts_of_solid(call, a->G, &s);
+  CagStatus status = cag_exacts_of_solid(call, a->G, true, &s);
   // The choice is one of faces of the boundary.
   if (status && (cag_is_final(status) || cag_given(call, 2))) return cag_geometry_ok(call, status);
   if (!status) {
     p = cag_exact_parts_of(call, s);
     if (!p || !cag_chosen_faces(p, 2, &open, &n)) return false;
+    if (cag_exact_parts_meshed(p)) {
+      status = mesh_shell(call, a, p, open, n, &made, call->err);
+      return changed_result(call, status, &made, result);
+    }
     status = kernel_shell(p, a, open, n, &made);
   }
   if (status && !cag_is_final(status))
@@ -111,10 +117,12 @@ bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue 
 static CagStatus mesh_draft(CagExactParts *p, const struct cag_exacts_draft *a,
                             const CagChosen *chosen, size_t n, CagSolid **out, CagError *err) {
   CagCall *call = p->call;
-  const double tolerance = cag_exacts_tolerance(call, p->solid);
   const CagSolidFace *faces = chosen_faces(call, chosen, n);
-  const CagStatus status = cag_solid_incline(p->solid, faces, n, a->angle, a->at.at,
-                                             cag_unit(a->pull.at), tolerance, out, err);
+  double tolerance;
+  CagStatus status = cag_exacts_tolerance(call, p->solid, &tolerance, err);
+  if (status) return status;
+  status = cag_solid_incline(p->solid, faces, n, a->angle, a->at.at, cag_unit(a->pull.at),
+                             tolerance, out, err);
   if (!status) say_meshed(call, "moved faces of the mesh", tolerance, "faces", n);
   return status;
 }
@@ -141,12 +149,14 @@ static CagStatus kernel_draft(CagExactParts *p, const struct cag_exacts_draft *a
 }
 
 bool cag_exacts_draft(CagCall *call, const struct cag_exacts_draft *a, CagValue *result) {
-  CagExactParts *p = cag_exact_parts(call, 0);
+  CagExactParts *p = cag_exact_parts(call, 0, true);
   CagSolid *made = NULL;
   CagChosen *chosen;
   CagError err;
   size_t n;
   if (!p || !cag_chosen_faces(p, 2, &chosen, &n)) return false;
+  if (cag_exact_parts_meshed(p))
+    return changed_result(call, mesh_draft(p, a, chosen, n, &made, call->err), &made, result);
   CagStatus status = kernel_draft(p, a, chosen, n, &made);
   if (status && !cag_is_final(status))
     status = instead(call, status, mesh_draft(p, a, chosen, n, &made, &err), &err);
@@ -248,7 +258,7 @@ static bool imprint_part(CagExactParts *p, size_t part, CagCurve *const *curves,
 }
 
 bool cag_exacts_imprint(CagCall *call, const struct cag_exacts_imprint *a, CagValue *result) {
-  CagExactParts *p = cag_exact_parts(call, 0);
+  CagExactParts *p = cag_exact_parts(call, 0, false);
   CagCurve **curves;
   CagBounds box;
   size_t n;

@@ -18,9 +18,14 @@ static void release_exact_parts(void *what) {
   cag_free(p);
 }
 
-CagExactParts *cag_exact_parts(CagCall *call, int argument) {
+CagExactParts *cag_exact_parts(CagCall *call, int argument, bool meshed) {
   const CagSolid *exact;
-  return cag_exacts_of(call, argument, &exact) ? cag_exact_parts_of(call, exact) : NULL;
+  const bool found = (meshed ? cag_exacts_or_meshed : cag_exacts_of)(call, argument, &exact);
+  return found ? cag_exact_parts_of(call, exact) : NULL;
+}
+
+bool cag_exact_parts_meshed(const CagExactParts *p) {
+  return p->count > 0 && p->parts[0].mesh != NULL;
 }
 
 CagExactParts *cag_exact_parts_of(CagCall *call, const CagSolid *exact) {

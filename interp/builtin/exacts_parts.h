@@ -19,10 +19,13 @@ typedef struct CagExactParts {
   CagValue records;      // the list of those of the chosen edges or faces, or CAG_UNSET
 } CagExactParts;
 
-// The parts of an argument, a solid. They are held by the call. NULL: an error is set.
-CagExactParts *cag_exact_parts(CagCall *call, int argument);
-// Those of an exact solid that cag_exacts_find found.
+// The parts of an argument, a solid; meshed: or the boundary that is found from its mesh
+// (cag_exacts_or_meshed). They are held by the call. NULL: an error is set.
+CagExactParts *cag_exact_parts(CagCall *call, int argument, bool meshed);
+// Those of an exact solid.
 CagExactParts *cag_exact_parts_of(CagCall *call, const CagSolid *exact);
+// Whether the boundary was found from the mesh, so that the kernel cannot change it.
+bool cag_exact_parts_meshed(const CagExactParts *p);
 
 // An edge or a face that was chosen.
 typedef struct CagChosen {

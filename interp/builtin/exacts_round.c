@@ -182,22 +182,47 @@ static CagRolledEdge rolled_edge(const CagExactParts *p, const BlendWords *words
   return (CagRolledEdge){part, blend->edge, {sizes[turned], sizes[!turned]}};
 }
 
-// Rounds the mesh. *done: it is rounded; else the kernel's error stays.
+// The error of an edge that the ball does not fit, or another one, of a solid whose boundary was
+// found from its mesh.
+static bool fail_rolled(const CagExactParts *p, const BlendWords *words, const CagChosen *chosen,
+                        const CagRolledEdge *rolled, size_t n, const CagRollLimit *limit,
+                        const CagError *err) {
+  char edge[256], most[96] = "";
+  *p->call->err = *err;
+  if (err->id != CAG_ERR_rounding_too_large || limit->index >= n)
+    return cag_fail_geometry(p->call, p->call->err);
+  const CagChosen *c = &chosen[limit->index];
+  const double *size = rolled[limit->index].size, given = fmax(size[0], size[1]);
+  describe_edge(p, &p->features[c->part].edges[c->index], edge, sizeof edge);
+  if (limit->factor > 0)
+    snprintf(most, sizeof most, "; the largest %s that fits is %.6g", words->size,
+             limit_shown(limit->factor * given));
+  return cag_fail_call(p->call, BLEND_SIZE, CAG_ERR_no_blend,
+                       "cannot %s %s, with the %s %.6g: the ball does not fit there%s", words->verb,
+                       edge, words->size, given, most);
+}
+
+// Rounds the mesh. *done: it is rounded; else the kernel's error stays, unless the boundary was
+// found from the mesh.
 static bool roll_edges(CagExactParts *p, const BlendWords *words, const CagChosen *chosen,
                        const CagBlend *blends, size_t n, CagValue *result, bool *done) {
   CagCall *call = p->call;
   CagRolledEdge *rolled = cag_hold_array(call, n, sizeof *rolled);
+  CagRollLimit limit;
   CagError err;
+  double tolerance;
   CagSolid *s = NULL;
   char said[96], number[32];
   *done = false;
   for (size_t i = 0; i < n; i++) rolled[i] = rolled_edge(p, words, chosen[i].part, &blends[i]);
-  const double tolerance = cag_exacts_tolerance(call, p->solid);
-  const CagStatus status = words->roll(p->solid, rolled, n, tolerance, NULL, &s, &err);
+  CagStatus status = cag_exacts_tolerance(call, p->solid, &tolerance, &err);
+  if (!status) status = words->roll(p->solid, rolled, n, tolerance, &limit, &s, &err);
   if (cag_is_final(status)) {
     *call->err = err;
     return cag_geometry_ok(call, status);
   }
+  if (status && cag_exact_parts_meshed(p))
+    return fail_rolled(p, words, chosen, rolled, n, &limit, &err);
   if (status) return true;
   if (!cag_solid_result(call, CAG_OK, &s, result)) return false;
   cag_shape_say_alike(*result, call->values[0]);
@@ -214,7 +239,7 @@ static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result
   const CagValue size = call->values[BLEND_SIZE];
   double sizes[2];
   if (!cag_is_function(size) && !read_sizes(call, words, size, sizes)) return false;
-  CagExactParts *p = cag_exact_parts(call, 0);
+  CagExactParts *p = cag_exact_parts(call, 0, true);
   CagChosen *chosen;
   CagBlend *blends;
   size_t n;
@@ -222,6 +247,8 @@ static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result
       !read_blends(p, words, chosen, n, &blends))
     return false;
   CagBlend *own = cag_hold_array(call, n, sizeof *own); // of one part
+  bool meshed;
+  if (cag_exact_parts_meshed(p)) return roll_edges(p, words, chosen, blends, n, result, &meshed);
   for (size_t i = 0; i < p->count; i++) {
     CagBoundaries made;
     CagKernelFailure why;

@@ -55,7 +55,7 @@ QUESTION(mesh) {
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagMesh *m;
   how.tolerance = 0.5;
-  const CagStatus status = cag_boundary_mesh(given, &how, NULL, &m, e);
+  const CagStatus status = cag_boundary_mesh(given, &how, false, &m, e);
   if (status) return status;
   fault_found((double)m->triangle_count);
   cag_mesh_release(m);

@@ -52,7 +52,7 @@ static void check_meshes(CagSolid *s, int turn, long euler) {
     CagVec3 edge[2];
     double terms[10] = {0};
     how.tolerance = TOLERANCES[k];
-    OK(cag_boundary_mesh(&b, &how, NULL, &m, &err));
+    OK(cag_boundary_mesh(&b, &how, false, &m, &err));
     OK(cag_mesh_watertight(m, &watertight, edge, &err));
     assert_true(watertight);
     assert_int_equal(cag_mesh_euler_characteristic(m), euler);
