@@ -23,6 +23,8 @@ static const CagDocChapter chapters[] = {
      "each family of surfaces with its formula and picture"},
     {"docs/solids-and-meshes.md", "solids-and-meshes", "Solids and meshes",
      "basic solids, set operations, and meshes"},
+    {"docs/solids.md", "solids", "Exact solids and assemblies",
+     "fillets, shells, STEP files, drawings, and parts lists"},
     {"docs/robots.md", "robots", "Robots", "chains of links, their motion, and URDF files"},
     {"docs/sensing.md", "sensing", "Sensing",
      "images, cameras that measure, and the formulas of sensors"},

@@ -1,7 +1,7 @@
 # Every command line of the manual and the README, in a folder with the files that they name. Pictures are small and in draft quality, and
 # films are short: the test is that the commands are valid.
 
-page_files="README.md docs/batch.md docs/curves-and-regions.md docs/embedding.md docs/from-openscad.md docs/from-povray.md docs/geometry.md docs/getting-started.md docs/language.md docs/live.md docs/robots.md docs/scenes-and-files.md docs/sensing.md docs/solids-and-meshes.md docs/surfaces-and-quadrics.md"
+page_files="README.md docs/batch.md docs/curves-and-regions.md docs/embedding.md docs/from-openscad.md docs/from-povray.md docs/geometry.md docs/getting-started.md docs/language.md docs/live.md docs/robots.md docs/scenes-and-files.md docs/sensing.md docs/solids-and-meshes.md docs/solids.md docs/surfaces-and-quadrics.md"
 
 # The lines of shell blocks, and the commands in the text except those with a placeholder such as FILE.
 block_lines() { awk '/^```sh/ { on = 1; next } /^```/ { on = 0 } on' "$1"; }
