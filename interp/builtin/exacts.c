@@ -67,18 +67,24 @@ CagStatus cag_exacts_tolerance(CagCall *call, const CagSolid *s, double *out, Ca
   return CAG_OK;
 }
 
-// The boundary that is found from the mesh. *out stays NULL if there is none; the kernel's error
-// then stays.
-static CagStatus compute_meshed(CagCall *call, const CagSolid *s, CagSolid **out) {
-  CagError err;
+CagStatus cag_exacts_meshed(CagCall *call, const CagSolid *s, const CagSolid **out, CagError *err) {
+  CagSolid *found = NULL;
   double tolerance;
-  CagStatus status = cag_exacts_tolerance(call, s, &tolerance, &err);
-  if (!status) status = cag_solid_facets(s, FINER * tolerance, out, &err);
-  if (!cag_is_final(status)) return CAG_OK;
-  *call->err = err;
-  return status;
+  CagStatus status = cag_exacts_tolerance(call, s, &tolerance, err);
+  if (!status) status = cag_solid_facets(s, FINER * tolerance, &found, err);
+  if (status) return status;
+  cag_hold_solid(call, found);
+  *out = found;
+  return CAG_OK;
 }
 
+bool cag_exacts_changed(CagCall *call, CagStatus status, CagSolid **made, CagValue *result) {
+  if (!cag_solid_result(call, status, made, result)) return false;
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
+
+// The kernel's error stays if there is no boundary of the mesh either.
 CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, bool meshed, const CagSolid **out) {
   CagSolid *exact = NULL;
   double scale;
@@ -86,15 +92,16 @@ CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, bool meshed, con
   if (s->kind == CAG_SOLID_EXACT && cag_transform_is_similarity(&s->placement, &scale))
     return CAG_OK;
   CagKernel *k = find_kernel(call);
-  CagStatus status = k ? compute(k, s, &exact, call->err) : cag_fail_memory(call->err);
-  if (status && !cag_is_final(status) && meshed) {
-    const CagStatus other = compute_meshed(call, s, &exact);
-    if (other || exact) status = other;
+  const CagStatus status = k ? compute(k, s, &exact, call->err) : cag_fail_memory(call->err);
+  if (!status) {
+    cag_hold_solid(call, exact);
+    *out = exact;
   }
-  if (status) return status;
-  cag_hold_solid(call, exact);
-  *out = exact;
-  return CAG_OK;
+  if (!status || cag_is_final(status) || !meshed) return status;
+  CagError err;
+  const CagStatus other = cag_exacts_meshed(call, s, out, &err);
+  if (cag_is_final(other)) *call->err = err;
+  return !other || cag_is_final(other) ? other : status;
 }
 
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out) {

@@ -17,6 +17,11 @@ bool cag_exacts_or_meshed(CagCall *call, int argument, const CagSolid **out);
 // The same for a solid that need not be an argument, without setting the machine's error; meshed:
 // or the boundary that is found from the mesh.
 CagStatus cag_exacts_of_solid(CagCall *call, const CagSolid *s, bool meshed, const CagSolid **out);
+// The boundary that is found from the mesh of a solid. It is held by the call.
+CagStatus cag_exacts_meshed(CagCall *call, const CagSolid *s, const CagSolid **out, CagError *err);
+// The result of a core function that made a solid of the first argument, with its attributes; or
+// the machine's error.
+bool cag_exacts_changed(CagCall *call, CagStatus status, CagSolid **made, CagValue *result);
 // Makes a solid of parts that the kernel found, whose contents it takes, and checks it
 // (cag_solid_exact_check).
 CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err);

@@ -47,12 +47,6 @@ static const CagSolidFace *chosen_faces(CagCall *call, const CagChosen *chosen, 
   return faces;
 }
 
-static bool changed_result(CagCall *call, CagStatus status, CagSolid **made, CagValue *result) {
-  if (!cag_solid_result(call, status, made, result)) return false;
-  cag_shape_say_alike(*result, call->values[0]);
-  return true;
-}
-
 // --- shell ---
 
 // p: NULL without a boundary, and without open faces.
@@ -102,13 +96,13 @@ bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue 
     if (!p || !cag_chosen_faces(p, 2, &open, &n)) return false;
     if (cag_exact_parts_meshed(p)) {
       status = mesh_shell(call, a, p, open, n, &made, call->err);
-      return changed_result(call, status, &made, result);
+      return cag_exacts_changed(call, status, &made, result);
     }
     status = kernel_shell(p, a, open, n, &made);
   }
   if (status && !cag_is_final(status))
     status = instead(call, status, mesh_shell(call, a, p, open, n, &made, &err), &err);
-  return changed_result(call, status, &made, result);
+  return cag_exacts_changed(call, status, &made, result);
 }
 
 // --- draft ---
@@ -156,11 +150,11 @@ bool cag_exacts_draft(CagCall *call, const struct cag_exacts_draft *a, CagValue 
   size_t n;
   if (!p || !cag_chosen_faces(p, 2, &chosen, &n)) return false;
   if (cag_exact_parts_meshed(p))
-    return changed_result(call, mesh_draft(p, a, chosen, n, &made, call->err), &made, result);
+    return cag_exacts_changed(call, mesh_draft(p, a, chosen, n, &made, call->err), &made, result);
   CagStatus status = kernel_draft(p, a, chosen, n, &made);
   if (status && !cag_is_final(status))
     status = instead(call, status, mesh_draft(p, a, chosen, n, &made, &err), &err);
-  return changed_result(call, status, &made, result);
+  return cag_exacts_changed(call, status, &made, result);
 }
 
 // --- split_solid ---

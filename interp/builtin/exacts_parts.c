@@ -28,7 +28,7 @@ bool cag_exact_parts_meshed(const CagExactParts *p) {
   return p->count > 0 && p->parts[0].mesh != NULL;
 }
 
-CagExactParts *cag_exact_parts_of(CagCall *call, const CagSolid *exact) {
+CagExactParts *cag_exact_parts_try(CagCall *call, const CagSolid *exact, CagError *err) {
   CagExactParts *p = cag_calloc(1, sizeof *p);
   size_t n = 0;
   if (!p) cag_vm_out_of_memory(call->vm);
@@ -37,15 +37,19 @@ CagExactParts *cag_exact_parts_of(CagCall *call, const CagSolid *exact) {
   p->records = (CagValue){.type = CAG_UNSET};
   p->solid = exact;
   p->kernel = cag_exacts_kernel(call);
-  if (!p->kernel) return NULL;
+  if (!p->kernel) cag_vm_out_of_memory(call->vm);
   p->parts = cag_solid_boundaries(p->solid, &n);
   cag_transform_is_similarity(&p->solid->placement, &p->scale);
   p->features = cag_calloc(n + 1, sizeof *p->features);
   if (!p->features) cag_vm_out_of_memory(call->vm);
   for (; p->count < n; p->count++)
-    if (!cag_geometry_ok(
-            call, cag_boundary_features(&p->parts[p->count], &p->features[p->count], call->err)))
-      return NULL;
+    if (cag_boundary_features(&p->parts[p->count], &p->features[p->count], err)) return NULL;
+  return p;
+}
+
+CagExactParts *cag_exact_parts_of(CagCall *call, const CagSolid *exact) {
+  CagExactParts *p = cag_exact_parts_try(call, exact, call->err);
+  if (!p) (void)cag_fail_geometry(call, call->err);
   return p;
 }
 

@@ -24,6 +24,8 @@ typedef struct CagExactParts {
 CagExactParts *cag_exact_parts(CagCall *call, int argument, bool meshed);
 // Those of an exact solid.
 CagExactParts *cag_exact_parts_of(CagCall *call, const CagSolid *exact);
+// The same without setting the machine's error.
+CagExactParts *cag_exact_parts_try(CagCall *call, const CagSolid *exact, CagError *err);
 // Whether the boundary was found from the mesh, so that the kernel cannot change it.
 bool cag_exact_parts_meshed(const CagExactParts *p);
 

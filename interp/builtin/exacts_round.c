@@ -9,6 +9,7 @@
 
 #include "geom/linalg/tolerance.h"
 #include "geom/solid/rolling.h"
+#include "interp/builtin/exacts_match.h"
 #include "interp/builtin/exacts_parts.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
@@ -182,92 +183,206 @@ static CagRolledEdge rolled_edge(const CagExactParts *p, const BlendWords *words
   return (CagRolledEdge){part, blend->edge, {sizes[turned], sizes[!turned]}};
 }
 
-// The error of an edge that the ball does not fit, or another one, of a solid whose boundary was
-// found from its mesh.
-static bool fail_rolled(const CagExactParts *p, const BlendWords *words, const CagChosen *chosen,
-                        const CagRolledEdge *rolled, size_t n, const CagRollLimit *limit,
-                        const CagError *err) {
-  char edge[256], most[96] = "";
-  *p->call->err = *err;
-  if (err->id != CAG_ERR_rounding_too_large || limit->index >= n)
-    return cag_fail_geometry(p->call, p->call->err);
-  const CagChosen *c = &chosen[limit->index];
-  const double *size = rolled[limit->index].size, given = fmax(size[0], size[1]);
-  describe_edge(p, &p->features[c->part].edges[c->index], edge, sizeof edge);
-  if (limit->factor > 0)
-    snprintf(most, sizeof most, "; the largest %s that fits is %.6g", words->size,
-             limit_shown(limit->factor * given));
-  return cag_fail_call(p->call, BLEND_SIZE, CAG_ERR_no_blend,
-                       "cannot %s %s, with the %s %.6g: the ball does not fit there%s", words->verb,
-                       edge, words->size, given, most);
+// The chosen edges of a solid, and their sizes.
+typedef struct Blending {
+  CagExactParts *parts;
+  const BlendWords *words;
+  const CagChosen *chosen;
+  const CagBlend *blends;
+  size_t n;
+} Blending;
+
+static const CagRolledEdge *rolled_edges(const Blending *b) {
+  CagRolledEdge *rolled = cag_hold_array(b->parts->call, b->n, sizeof *rolled);
+  for (size_t i = 0; i < b->n; i++)
+    rolled[i] = rolled_edge(b->parts, b->words, b->chosen[i].part, &b->blends[i]);
+  return rolled;
 }
 
-// Rounds the mesh. *done: it is rounded; else the kernel's error stays, unless the boundary was
-// found from the mesh.
-static bool roll_edges(CagExactParts *p, const BlendWords *words, const CagChosen *chosen,
-                       const CagBlend *blends, size_t n, CagValue *result, bool *done) {
-  CagCall *call = p->call;
-  CagRolledEdge *rolled = cag_hold_array(call, n, sizeof *rolled);
-  CagRollLimit limit;
-  CagError err;
+// Rounds the mesh.
+static CagStatus roll_edges(const Blending *b, CagRollLimit *limit, CagSolid **out, CagError *err) {
+  CagCall *call = b->parts->call;
+  const CagSolid *s = b->parts->solid;
   double tolerance;
-  CagSolid *s = NULL;
   char said[96], number[32];
-  *done = false;
-  for (size_t i = 0; i < n; i++) rolled[i] = rolled_edge(p, words, chosen[i].part, &blends[i]);
-  CagStatus status = cag_exacts_tolerance(call, p->solid, &tolerance, &err);
-  if (!status) status = words->roll(p->solid, rolled, n, tolerance, &limit, &s, &err);
-  if (cag_is_final(status)) {
-    *call->err = err;
-    return cag_geometry_ok(call, status);
-  }
-  if (status && cag_exact_parts_meshed(p))
-    return fail_rolled(p, words, chosen, rolled, n, &limit, &err);
-  if (status) return true;
-  if (!cag_solid_result(call, CAG_OK, &s, result)) return false;
-  cag_shape_say_alike(*result, call->values[0]);
+  CagStatus status = cag_exacts_tolerance(call, s, &tolerance, err);
+  if (!status) status = b->words->roll(s, rolled_edges(b), b->n, tolerance, limit, out, err);
+  if (status) return status;
   snprintf(said, sizeof said, "tier C: rolling ball on the mesh, within %s mm",
            cag_number_text(tolerance, number));
-  cag_exacts_say_tier(call, said, "edges", n);
-  *done = true;
-  return true;
+  cag_exacts_say_tier(call, said, "edges", b->n);
+  return CAG_OK;
+}
+
+// The error of an edge that the ball does not fit, or another one, of a solid whose boundary was
+// found from its mesh.
+static bool fail_rolled(const Blending *b, const CagRollLimit *limit) {
+  CagCall *call = b->parts->call;
+  char edge[256], most[96] = "";
+  if (call->err->id != CAG_ERR_rounding_too_large || limit->index >= b->n)
+    return cag_fail_geometry(call, call->err);
+  const CagChosen *c = &b->chosen[limit->index];
+  const double *size = rolled_edges(b)[limit->index].size, given = fmax(size[0], size[1]);
+  describe_edge(b->parts, &b->parts->features[c->part].edges[c->index], edge, sizeof edge);
+  if (limit->factor > 0)
+    snprintf(most, sizeof most, "; the largest %s that fits is %.6g", b->words->size,
+             limit_shown(limit->factor * given));
+  return cag_fail_call(call, BLEND_SIZE, CAG_ERR_no_blend,
+                       "cannot %s %s, with the %s %.6g: the ball does not fit there%s",
+                       b->words->verb, edge, b->words->size, given, most);
+}
+
+// --- Tier B ---
+
+// What the kernel said about the part that it could not blend.
+typedef struct BlendFailure {
+  size_t part, count;
+  const CagBlend *blends; // of the part
+  CagKernelFailure why;
+} BlendFailure;
+
+// The error is that of the call.
+static CagStatus ask_kernel(const Blending *b, CagSolid **out, BlendFailure *failure) {
+  CagExactParts *p = b->parts;
+  CagBlend *own = cag_hold_array(p->call, b->n, sizeof *own);
+  CagStatus status = CAG_OK;
+  *failure = (BlendFailure){.blends = own};
+  for (size_t i = 0; !status && i < p->count; i++) {
+    CagBoundaries made;
+    failure->part = i;
+    failure->count = 0;
+    for (size_t k = 0; k < b->n; k++)
+      if (b->chosen[k].part == i) own[failure->count++] = b->blends[k];
+    status = b->words->request(p->kernel, &p->parts[i], own, failure->count, &made, &failure->why,
+                               p->call->err);
+    if (!status) status = cag_exact_parts_take(p, &made);
+  }
+  if (!status) status = cag_exact_parts_solid(p, out);
+  if (!status) cag_exacts_say_tier(p->call, "tier B: kernel", "edges", b->n);
+  return status;
 }
 
 // --- The functions ---
 
+// Functions of the script choose the edges and sizes.
+static bool read_blending(CagExactParts *p, const BlendWords *words, Blending *out) {
+  CagChosen *chosen;
+  CagBlend *blends;
+  const bool records = cag_is_function(p->call->values[BLEND_SIZE]);
+  *out = (Blending){.parts = p, .words = words};
+  if (!cag_chosen_edges(p, BLEND_EDGES, records, &chosen, &out->n) ||
+      !read_blends(p, words, chosen, out->n, &blends))
+    return false;
+  out->chosen = chosen;
+  out->blends = blends;
+  return true;
+}
+
+// The number of a chosen edge, counting through all parts.
+static size_t edge_number(const CagExactParts *p, const CagChosen *c) {
+  size_t number = c->index;
+  for (size_t i = 0; i < c->part; i++) number += p->features[i].edge_count;
+  return number;
+}
+
+// The blend of the edge of the kernel's boundary that runs along one of the other boundary at each
+// place; NULL if these are not chosen. *same: all places agree.
+static const CagBlend *blend_along(const Blending *b, const size_t *by_number, const size_t *of,
+                                   bool *same) {
+  const CagBlend *found = NULL;
+  int chosen = 0;
+  for (int k = 0; k < CAG_MATCH_PLACES; k++) {
+    const size_t i = of[k] == SIZE_MAX ? SIZE_MAX : by_number[of[k]];
+    if (i == SIZE_MAX) continue;
+    const CagBlend *one = &b->blends[i];
+    if (one->last != one->first || (found && one->first != found->first)) *same = false;
+    found = one;
+    chosen++;
+  }
+  if (chosen > 0 && chosen < CAG_MATCH_PLACES) *same = false;
+  return found;
+}
+
+// The same edges with the same sizes, of the boundary that is found from the mesh. *done: there are
+// such edges. Sizes that change along an edge are not transferred.
+static CagStatus transfer(const Blending *b, CagExactParts *p, Blending *out, bool *done,
+                          CagError *err) {
+  CagCall *call = p->call;
+  CagEdgeMatch m;
+  const CagStatus status = cag_match_edges(b->parts, p, &m, err);
+  if (status) return status;
+  size_t *by_number = cag_hold_array(call, m.from_count, sizeof *by_number);
+  bool *taken = cag_hold_array(call, m.to_count, sizeof *taken);
+  CagChosen *chosen = cag_hold_array(call, m.to_count, sizeof *chosen);
+  CagBlend *blends = cag_hold_array(call, m.to_count, sizeof *blends);
+  *out = (Blending){.parts = p, .words = b->words, .chosen = chosen, .blends = blends};
+  for (size_t i = 0; i < m.from_count; i++) by_number[i] = SIZE_MAX;
+  for (size_t i = 0; i < b->n; i++) by_number[edge_number(b->parts, &b->chosen[i])] = i;
+  *done = true;
+  for (size_t part = 0, number = 0; part < p->count; part++)
+    for (size_t k = 0; k < p->features[part].edge_count; k++, number++) {
+      const CagBlend *along = blend_along(b, by_number, m.of[number], done);
+      const CagChosen one = {part, k, {.type = CAG_UNSET}};
+      if (!along) continue;
+      const double size = along->first * b->parts->scale;
+      taken[number] = true;
+      chosen[out->n] = one;
+      blends[out->n++] = blend_of(p, b->words, &one, (double[2]){size, size});
+    }
+  for (size_t i = 0; i < m.from_count; i++)
+    if (by_number[i] != SIZE_MAX && (m.back[i] == SIZE_MAX || !taken[m.back[i]])) *done = false;
+  return CAG_OK;
+}
+
+// Rounds the same edges of the boundary that is found from the mesh. The status is not final if that
+// cannot be done.
+static CagStatus roll_found_edges(const Blending *b, CagSolid **out, CagError *err) {
+  CagCall *call = b->parts->call;
+  const CagSolid *found = NULL;
+  Blending other;
+  bool same = false;
+  CagStatus status = cag_exacts_meshed(call, CAG_AS_SHAPE(call->values[0])->as.solid, &found, err);
+  if (status) return status;
+  CagExactParts *p = cag_exact_parts_try(call, found, err);
+  if (!p) return err->status;
+  status = transfer(b, p, &other, &same, err);
+  if (!status && !same)
+    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
+                      "the edges are not those of the mesh");
+  return status ? status : roll_edges(&other, NULL, out, err);
+}
+
+static bool blend_meshed(const Blending *b, CagValue *result) {
+  CagCall *call = b->parts->call;
+  CagRollLimit limit;
+  CagSolid *made = NULL;
+  const CagStatus status = roll_edges(b, &limit, &made, call->err);
+  if (status && !cag_is_final(status)) return fail_rolled(b, &limit);
+  return cag_exacts_changed(call, status, &made, result);
+}
+
 static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result) {
   const CagValue size = call->values[BLEND_SIZE];
   double sizes[2];
+  Blending b;
+  BlendFailure failure;
+  CagSolid *made = NULL;
   if (!cag_is_function(size) && !read_sizes(call, words, size, sizes)) return false;
   CagExactParts *p = cag_exact_parts(call, 0, true);
-  CagChosen *chosen;
-  CagBlend *blends;
-  size_t n;
-  if (!p || !cag_chosen_edges(p, BLEND_EDGES, cag_is_function(size), &chosen, &n) ||
-      !read_blends(p, words, chosen, n, &blends))
-    return false;
-  CagBlend *own = cag_hold_array(call, n, sizeof *own); // of one part
-  bool meshed;
-  if (cag_exact_parts_meshed(p)) return roll_edges(p, words, chosen, blends, n, result, &meshed);
-  for (size_t i = 0; i < p->count; i++) {
-    CagBoundaries made;
-    CagKernelFailure why;
-    size_t count = 0;
-    bool rolled = false;
-    for (size_t k = 0; k < n; k++)
-      if (chosen[k].part == i) own[count++] = blends[k];
-    const CagStatus status =
-        words->request(p->kernel, &p->parts[i], own, count, &made, &why, call->err);
-    if (status && !cag_is_final(status) &&
-        !roll_edges(p, words, chosen, blends, n, result, &rolled))
-      return false;
-    if (rolled) return true;
-    if (status) return fail_blend(p, words, i, own, count, &why);
-    if (!cag_exact_parts_add(p, &made)) return false;
+  if (!p || !read_blending(p, words, &b)) return false;
+  if (cag_exact_parts_meshed(p)) return blend_meshed(&b, result);
+  CagStatus status = ask_kernel(&b, &made, &failure);
+  if (status && !cag_is_final(status)) {
+    const CagError kernel = *call->err;
+    CagError err;
+    CagStatus rolled = roll_edges(&b, NULL, &made, &err);
+    if (rolled && !cag_is_final(rolled)) rolled = roll_found_edges(&b, &made, &err);
+    *call->err = cag_is_final(rolled) ? err : kernel;
+    if (!rolled || cag_is_final(rolled)) status = rolled;
   }
-  if (!cag_exact_parts_result(p, 0, result)) return false;
-  cag_exacts_say_tier(call, "tier B: kernel", "edges", n);
-  return true;
+  if (status && !cag_is_final(status))
+    return fail_blend(p, words, failure.part, failure.blends, failure.count, &failure.why);
+  return cag_exacts_changed(call, status, &made, result);
 }
 
 bool cag_exacts_fillet(CagCall *call, const struct cag_exacts_fillet *a, CagValue *result) {
