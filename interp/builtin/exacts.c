@@ -8,7 +8,7 @@
 
 #include "geom/solid/csg.h"
 #include "geom/solid/exact.h"
-#include "geom/solid/facets.h"
+#include "geom/solid/recognized.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/support.h"
 #include "interp/vm/vm.h"
@@ -71,7 +71,7 @@ CagStatus cag_exacts_meshed(CagCall *call, const CagSolid *s, const CagSolid **o
   CagSolid *found = NULL;
   double tolerance;
   CagStatus status = cag_exacts_tolerance(call, s, &tolerance, err);
-  if (!status) status = cag_solid_facets(s, FINER * tolerance, &found, err);
+  if (!status) status = cag_solid_recognized(s, FINER * tolerance, &found, err);
   if (status) return status;
   cag_hold_solid(call, found);
   *out = found;

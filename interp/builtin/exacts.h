@@ -12,7 +12,7 @@ CagKernel *cag_exacts_kernel(CagCall *call);
 // else its boundary, which the kernel computes. It is held by the call.
 bool cag_exacts_of(CagCall *call, int argument, const CagSolid **out);
 // The same; where the kernel is missing or fails, the boundary that is found from the mesh
-// (geom/solid/facets.h).
+// (geom/solid/recognized.h).
 bool cag_exacts_or_meshed(CagCall *call, int argument, const CagSolid **out);
 // The same for a solid that need not be an argument, without setting the machine's error; meshed:
 // or the boundary that is found from the mesh.

@@ -1,6 +1,6 @@
-// Carriers of operands (see facet_sources.h).
+// Carriers of operands (see recognized_sources.h).
 
-#include "geom/solid/facet_sources.h"
+#include "geom/solid/recognized_sources.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "base/stop.h"
 #include "geom/mesh/edges.h"
 #include "geom/solid/csg.h"
-#include "geom/solid/facet_fit.h"
+#include "geom/solid/recognized_fit.h"
 
 // A vertex is on a face if it is closer than this fraction of the size of the operand.
 #define ON_FACE 1e-9
@@ -25,16 +25,16 @@
 // Points from which a carrier is recognized.
 #define SAMPLES_MOST 600
 
-void cag_facet_sources_free(CagFacetSources *s) {
+void cag_recognized_sources_free(CagRecognizedSources *s) {
   for (size_t i = 0; i < s->count; i++) {
     cag_surface_release(s->items[i].spline);
     cag_curve_release(s->items[i].profile);
   }
   cag_free(s->items);
-  *s = (CagFacetSources){0};
+  *s = (CagRecognizedSources){0};
 }
 
-static CagStatus add_source(CagFacetSources *s, const CagCarrier *c, uint32_t *label,
+static CagStatus add_source(CagRecognizedSources *s, const CagCarrier *c, uint32_t *label,
                             CagError *err) {
   if (!CAG_RESERVE(s->items, s->room, s->count + 1)) return cag_fail_memory(err);
   s->items[s->count++] = *c;
@@ -175,10 +175,11 @@ static CagStatus group_carrier(const Groups *g, uint32_t group, CagCarrier *out,
   *out = (CagCarrier){.kind = CAG_CARRIER_NONE};
   CagStatus status = group_points(g, group, &p, err);
   if (status) return status;
-  if (p.n > 0) status = cag_facet_fit(p.points, p.normals, p.n, RECOGNIZED * g->size, out, err);
+  if (p.n > 0)
+    status = cag_recognized_fit(p.points, p.normals, p.n, RECOGNIZED * g->size, out, err);
   // The apex of a cone has no normal. The facets of a cone are inclined like the cone.
   if (!status && p.n > 0 && out->kind == CAG_CARRIER_NONE)
-    status = cag_facet_fit(p.points, p.flat, p.n, RECOGNIZED * g->size, out, err);
+    status = cag_recognized_fit(p.points, p.flat, p.n, RECOGNIZED * g->size, out, err);
   group_points_free(&p);
   return status;
 }
@@ -193,7 +194,7 @@ static CagStatus spline_carrier(const CagSurface *face, CagCarrier *out, CagErro
 
 // Labels the triangles with the carriers of their groups.
 static CagStatus label_groups(const Groups *g, const CagSolid *faces, CagMesh *labeled,
-                              CagFacetSources *sources, CagError *err) {
+                              CagRecognizedSources *sources, CagError *err) {
   uint32_t *labels = cag_calloc(g->count + 1, sizeof *labels);
   CagStatus status = labels ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < g->count; i++) {
@@ -209,7 +210,7 @@ static CagStatus label_groups(const Groups *g, const CagSolid *faces, CagMesh *l
   return status;
 }
 
-static CagStatus label_mesh(CagMesh *m, const CagSolid *s, CagFacetSources *sources,
+static CagStatus label_mesh(CagMesh *m, const CagSolid *s, CagRecognizedSources *sources,
                             CagError *err) {
   const CagBounds box = cag_mesh_bounds(m);
   Groups g = {.mesh = m, .size = cag_norm(cag_sub(box.max, box.min))};
@@ -227,7 +228,7 @@ static CagStatus label_mesh(CagMesh *m, const CagSolid *s, CagFacetSources *sour
 // --- Operands ---
 
 typedef struct Labeling {
-  CagFacetSources *sources;
+  CagRecognizedSources *sources;
   double tolerance;
 } Labeling;
 
@@ -268,7 +269,7 @@ static CagStatus label_side(const Labeling *l, const CagSolid *s, CagSolid **out
   if (s->kind == CAG_SOLID_HALF_SPACE && cag_solid_form(s, &q)) {
     const CagVec3 n = cag_vec3(q.c[6], q.c[7], q.c[8]);
     c.kind = CAG_CARRIER_PLANE;
-    c.frame = cag_facet_frame(cag_scaled(n, -q.c[9] / cag_dot(n, n)), cag_unit(n));
+    c.frame = cag_recognized_frame(cag_scaled(n, -q.c[9] / cag_dot(n, n)), cag_unit(n));
   }
   const CagTransform same = cag_transform_identity();
   CagStatus status = cag_solid_transform(s, &same, out, err); // a copy
@@ -302,18 +303,18 @@ static CagStatus label_solid(const Labeling *l, const CagSolid *s, CagSolid **ou
   return label_leaf(l, s, out, err);
 }
 
-CagStatus cag_facet_mesh(const CagSolid *s, double tolerance, CagFacetSources *sources,
-                         CagMesh **out, CagError *err) {
+CagStatus cag_recognized_mesh(const CagSolid *s, double tolerance, CagRecognizedSources *sources,
+                              CagMesh **out, CagError *err) {
   const Labeling l = {sources, tolerance};
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagSolid *labeled;
-  *sources = (CagFacetSources){0};
+  *sources = (CagRecognizedSources){0};
   how.tolerance = tolerance;
   CagStatus status = label_solid(&l, s, &labeled, err);
   if (!status) {
     status = cag_solid_tessellate(labeled, &how, out, err);
     cag_solid_release(labeled);
   }
-  if (status) cag_facet_sources_free(sources);
+  if (status) cag_recognized_sources_free(sources);
   return status;
 }

@@ -1,6 +1,6 @@
-// Curves between carriers (see facet_curve.h).
+// Curves between carriers (see recognized_curve.h).
 
-#include "geom/solid/facet_curve.h"
+#include "geom/solid/recognized_curve.h"
 
 #include <math.h>
 #include <string.h>
@@ -61,8 +61,8 @@ static bool least_step(const CagVec3 *rows, const double *values, size_t n, CagV
   return true;
 }
 
-CagStatus cag_facet_settle(const CagCarrier *const *carriers, size_t n, double most, CagVec3 *p,
-                           bool *settled, CagError *err) {
+CagStatus cag_recognized_settle(const CagCarrier *const *carriers, size_t n, double most,
+                                CagVec3 *p, bool *settled, CagError *err) {
   CagRollSide sides[3];
   double uv[3][2];
   CagVec3 at = *p, step = {INFINITY, 0, 0};
@@ -114,7 +114,7 @@ static CagStatus settle_points(CurvePoints *c, CagError *err) {
     status = cag_stop_check(err);
     settled[i] = fixed;
     if (!status && !fixed)
-      status = cag_facet_settle(c->carriers, 2, c->most, &c->at[i], &settled[i], err);
+      status = cag_recognized_settle(c->carriers, 2, c->most, &c->at[i], &settled[i], err);
     count += settled[i];
   }
   for (size_t i = 0; !status && 2 * count > c->n && count >= 4 && i < c->n; i++)
@@ -161,7 +161,7 @@ static CagStatus split_chord(CurvePoints *c, size_t i, CagError *err) {
   CagVec3 middle = cag_lerp(c->at[i], c->at[i + 1], 0.5);
   bool settled;
   const double most = fmax(c->most, cag_norm(cag_sub(c->at[i + 1], c->at[i])) / 4);
-  CagStatus status = cag_facet_settle(c->carriers, 2, most, &middle, &settled, err);
+  CagStatus status = cag_recognized_settle(c->carriers, 2, most, &middle, &settled, err);
   if (status) return status;
   memmove(c->at + i + 2, c->at + i + 1, (c->n - i - 1) * sizeof *c->at);
   c->at[i + 1] = middle;
@@ -317,8 +317,9 @@ static CagStatus spline_curve(CurvePoints *c, CagCurve **out, CagError *err) {
                                     out, err);
 }
 
-CagStatus cag_facet_curve(const CagCarrier *const carriers[2], const CagVec3 *points, size_t n,
-                          bool closed, double size, double most, CagCurve **out, CagError *err) {
+CagStatus cag_recognized_curve(const CagCarrier *const carriers[2], const CagVec3 *points, size_t n,
+                               bool closed, double size, double most, CagCurve **out,
+                               CagError *err) {
   CurvePoints *c = cag_malloc(sizeof *c);
   Conic conic;
   if (!c) return cag_fail_memory(err);
@@ -343,8 +344,8 @@ CagStatus cag_facet_curve(const CagCarrier *const carriers[2], const CagVec3 *po
   return status;
 }
 
-CagStatus cag_facet_trace(const CagCarrier *c, const CagCurve *curve, CagCurve **out,
-                          CagError *err) {
+CagStatus cag_recognized_trace(const CagCarrier *c, const CagCurve *curve, CagCurve **out,
+                               CagError *err) {
   CagVec3 uv[TRACE];
   double t[TRACE], near[2] = {0, 0};
   bool straight;

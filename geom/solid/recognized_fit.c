@@ -1,6 +1,6 @@
-// Recognition of carriers (see facet_fit.h).
+// Recognition of carriers (see recognized_fit.h).
 
-#include "geom/solid/facet_fit.h"
+#include "geom/solid/recognized_fit.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,7 +25,7 @@ typedef struct Samples {
   double most;
 } Samples;
 
-CagTransform cag_facet_frame(CagVec3 origin, CagVec3 z) {
+CagTransform cag_recognized_frame(CagVec3 origin, CagVec3 z) {
   const CagVec3 off = fabs(z.x) < 0.6 ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
   const CagVec3 x = cag_unit(cag_sub(off, cag_scaled(z, cag_dot(off, z)))), y = cag_cross(z, x);
   const CagVec3 columns[4] = {x, y, z, origin};
@@ -94,7 +94,7 @@ static CagStatus fit_plane(const Samples *s, CagCarrier *out, CagError *err) {
   CagStatus status = least_spread(s->points, s->n, middle, &least, &found, err);
   if (status) return status;
   if (found) z = cag_dot(least, z) < 0 ? cag_scaled(least, -1) : least;
-  *out = (CagCarrier){.kind = CAG_CARRIER_PLANE, .frame = cag_facet_frame(middle, z)};
+  *out = (CagCarrier){.kind = CAG_CARRIER_PLANE, .frame = cag_recognized_frame(middle, z)};
   return CAG_OK;
 }
 
@@ -143,9 +143,10 @@ static CagStatus fit_sphere(const Samples *s, CagCarrier *out, CagError *err) {
     const CagVec3 c = cag_vec3(right[0], right[1], right[2]);
     const double square = right[3] + cag_dot(c, c);
     if (square > 0 && isfinite(square))
-      *out = (CagCarrier){.kind = CAG_CARRIER_SPHERE,
-                          .a = scale * sqrt(square),
-                          .frame = cag_facet_frame(cag_madd(from, scale, c), cag_vec3(0, 0, 1))};
+      *out =
+          (CagCarrier){.kind = CAG_CARRIER_SPHERE,
+                       .a = scale * sqrt(square),
+                       .frame = cag_recognized_frame(cag_madd(from, scale, c), cag_vec3(0, 0, 1))};
   }
   cag_free(a);
   return status;
@@ -166,7 +167,7 @@ static CagStatus across_axis(const Samples *s, const CagTransform *frame, double
 }
 
 static CagStatus fit_cylinder(const Samples *s, CagVec3 axis, CagCarrier *out, CagError *err) {
-  CagTransform frame = cag_facet_frame(s->points[0], axis);
+  CagTransform frame = cag_recognized_frame(s->points[0], axis);
   double(*xy)[2], center[2], radius;
   bool found;
   CagStatus status = across_axis(s, &frame, &xy, err);
@@ -175,7 +176,8 @@ static CagStatus fit_cylinder(const Samples *s, CagVec3 axis, CagCarrier *out, C
   if (status || !found) return status;
   const CagVec3 o = cag_madd(cag_madd(s->points[0], center[0], cag_frame_column(&frame, 0)),
                              center[1], cag_frame_column(&frame, 1));
-  *out = (CagCarrier){.kind = CAG_CARRIER_CYLINDER, .a = radius, .frame = cag_facet_frame(o, axis)};
+  *out = (CagCarrier){
+      .kind = CAG_CARRIER_CYLINDER, .a = radius, .frame = cag_recognized_frame(o, axis)};
   return CAG_OK;
 }
 
@@ -203,7 +205,7 @@ static CagStatus fit_cone(const Samples *s, CagVec3 axis, double slope, CagCarri
       *out = (CagCarrier){.kind = CAG_CARRIER_CONE,
                           .a = level * tan(angle),
                           .b = angle,
-                          .frame = cag_facet_frame(cag_madd(apex, level, axis), axis)};
+                          .frame = cag_recognized_frame(cag_madd(apex, level, axis), axis)};
   }
   cag_free(a);
   return status;
@@ -252,7 +254,7 @@ static CagStatus fit_torus(const Samples *s, CagCarrier *out, CagError *err) {
   *out = (CagCarrier){.kind = CAG_CARRIER_TORUS,
                       .a = center[0],
                       .b = radius,
-                      .frame = cag_facet_frame(cag_madd(through, center[1], axis), axis)};
+                      .frame = cag_recognized_frame(cag_madd(through, center[1], axis), axis)};
   return CAG_OK;
 }
 
@@ -267,8 +269,8 @@ static CagStatus fit_turned(const Samples *s, CagCarrier *out, CagError *err) {
   return fit_cone(s, axis, slope, out, err);
 }
 
-CagStatus cag_facet_fit(const CagVec3 *points, const CagVec3 *normals, size_t n, double most,
-                        CagCarrier *out, CagError *err) {
+CagStatus cag_recognized_fit(const CagVec3 *points, const CagVec3 *normals, size_t n, double most,
+                             CagCarrier *out, CagError *err) {
   static CagStatus (*const FITS[])(const Samples *s, CagCarrier *out,
                                    CagError *err) = {fit_plane, fit_turned, fit_sphere, fit_torus};
   const Samples s = {points, normals, n, most};
@@ -290,7 +292,7 @@ CagStatus cag_facet_fit(const CagVec3 *points, const CagVec3 *normals, size_t n,
 
 // --- Comparison ---
 
-bool cag_facet_same(const CagCarrier *a, const CagCarrier *b, double size, double most) {
+bool cag_recognized_same(const CagCarrier *a, const CagCarrier *b, double size, double most) {
   if (a->kind != b->kind || !cag_carrier_is_analytic(a)) return false;
   const CagVec3 z = cag_frame_column(&a->frame, 2), other = cag_frame_column(&b->frame, 2);
   const CagVec3 off = cag_sub(cag_frame_column(&b->frame, 3), cag_frame_column(&a->frame, 3));

@@ -1,6 +1,6 @@
-// Regions of a mesh and their borders (see facet_net.h).
+// Regions of a mesh and their borders (see recognized_net.h).
 
-#include "geom/solid/facet_net.h"
+#include "geom/solid/recognized_net.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/mesh/edges.h"
-#include "geom/solid/facet_fit.h"
+#include "geom/solid/recognized_fit.h"
 
 // Carriers that differ by less than this fraction of the size of the mesh are one.
 #define SAME 1e-8
@@ -25,7 +25,7 @@ typedef struct MeshEdge {
 } MeshEdge;
 
 typedef struct NetWork {
-  CagFacetNet *net;
+  CagRecognizedNet *net;
   double tolerance;
   MeshEdge *edges;
   size_t edge_count;
@@ -35,14 +35,14 @@ typedef struct NetWork {
   bool *used;               // by edges
 } NetWork;
 
-void cag_facet_net_free(CagFacetNet *n) {
+void cag_recognized_net_free(CagRecognizedNet *n) {
   cag_free(n->region);
   cag_free(n->source);
   cag_free(n->area);
   cag_free(n->path);
   cag_free(n->chains);
   cag_free(n->corners);
-  *n = (CagFacetNet){0};
+  *n = (CagRecognizedNet){0};
 }
 
 static void work_free(NetWork *w) {
@@ -64,7 +64,7 @@ static double mesh_size(const CagMesh *m) {
   return cag_norm(cag_sub(box.max, box.min));
 }
 
-static CagStatus find_equal_carriers(NetWork *w, const CagFacetSources *s, CagError *err) {
+static CagStatus find_equal_carriers(NetWork *w, const CagRecognizedSources *s, CagError *err) {
   const double size = mesh_size(w->net->mesh);
   w->carrier = cag_calloc(s->count + 1, sizeof *w->carrier);
   if (!w->carrier) return cag_fail_memory(err);
@@ -72,8 +72,8 @@ static CagStatus find_equal_carriers(NetWork *w, const CagFacetSources *s, CagEr
     size_t k = 0;
     CagStatus status = cag_stop_check(err);
     if (status) return status;
-    while (k < i &&
-           !(w->carrier[k] == k && cag_facet_same(&s->items[k], &s->items[i], size, SAME * size)))
+    while (k < i && !(w->carrier[k] == k &&
+                      cag_recognized_same(&s->items[k], &s->items[i], size, SAME * size)))
       k++;
     w->carrier[i] = (uint32_t)k;
   }
@@ -165,7 +165,7 @@ static CagStatus unite_narrow(NetWork *w, CagError *err) {
 }
 
 static CagStatus find_regions(NetWork *w, CagError *err) {
-  CagFacetNet *net = w->net;
+  CagRecognizedNet *net = w->net;
   const size_t n = net->mesh->triangle_count;
   w->parent = cag_calloc(n + 1, sizeof *w->parent);
   net->region = cag_calloc(n + 1, sizeof *net->region);
@@ -236,7 +236,7 @@ static bool is_corner(const NetWork *w, uint32_t v) {
                 : left_of(w, at[1]) != l || right_of(w, at[1]) != r;
 }
 
-static CagStatus add_to_path(CagFacetNet *net, uint32_t v, CagError *err) {
+static CagStatus add_to_path(CagRecognizedNet *net, uint32_t v, CagError *err) {
   if (!CAG_RESERVE(net->path, net->path_room, net->path_count + 1)) return cag_fail_memory(err);
   net->path[net->path_count++] = v;
   return CAG_OK;
@@ -245,12 +245,12 @@ static CagStatus add_to_path(CagFacetNet *net, uint32_t v, CagError *err) {
 // Follows the border from a vertex along an edge to the next corner, or around.
 static CagStatus add_chain(NetWork *w, uint32_t v, uint32_t edge, const size_t *corner_of,
                            CagError *err) {
-  CagFacetNet *net = w->net;
+  CagRecognizedNet *net = w->net;
   const bool ahead = w->edges[edge].from == v;
-  CagFacetChain c = {.first = net->path_count,
-                     .sides = {ahead ? left_of(w, edge) : right_of(w, edge),
-                               ahead ? right_of(w, edge) : left_of(w, edge)},
-                     .closed = corner_of[v] == 0};
+  CagRecognizedChain c = {.first = net->path_count,
+                          .sides = {ahead ? left_of(w, edge) : right_of(w, edge),
+                                    ahead ? right_of(w, edge) : left_of(w, edge)},
+                          .closed = corner_of[v] == 0};
   const uint32_t start = v;
   CagStatus status = add_to_path(net, v, err);
   for (;;) {
@@ -272,7 +272,7 @@ static CagStatus add_chain(NetWork *w, uint32_t v, uint32_t edge, const size_t *
   return CAG_OK;
 }
 
-static CagStatus add_corner(CagFacetNet *net, uint32_t v, size_t *number, CagError *err) {
+static CagStatus add_corner(CagRecognizedNet *net, uint32_t v, size_t *number, CagError *err) {
   if (!CAG_RESERVE(net->corners, net->corner_room, net->corner_count + 1))
     return cag_fail_memory(err);
   net->corners[net->corner_count++] = v;
@@ -281,7 +281,7 @@ static CagStatus add_corner(CagFacetNet *net, uint32_t v, size_t *number, CagErr
 }
 
 static CagStatus find_chains(NetWork *w, CagError *err) {
-  CagFacetNet *net = w->net;
+  CagRecognizedNet *net = w->net;
   const size_t n = net->mesh->vertex_count;
   size_t *corner_of = cag_calloc(n + 1, sizeof *corner_of); // plus 1
   CagStatus status = corner_of ? sort_border(w, err) : cag_fail_memory(err);
@@ -307,7 +307,7 @@ static CagStatus find_chains(NetWork *w, CagError *err) {
 
 // --- Short chains ---
 
-static double chain_length(const CagFacetNet *net, const CagFacetChain *c) {
+static double chain_length(const CagRecognizedNet *net, const CagRecognizedChain *c) {
   double length = 0;
   for (size_t i = c->first + 1; i < c->first + c->count; i++)
     length += cag_norm(
@@ -316,13 +316,13 @@ static double chain_length(const CagFacetNet *net, const CagFacetChain *c) {
 }
 
 static CagStatus drop_short_chains(NetWork *w, CagError *err) {
-  CagFacetNet *net = w->net;
+  CagRecognizedNet *net = w->net;
   uint32_t *one = cag_calloc(net->corner_count + 1, sizeof *one);
   size_t kept = 0;
   if (!one) return cag_fail_memory(err);
   for (size_t i = 0; i < net->corner_count; i++) one[i] = (uint32_t)i;
   for (size_t i = 0; i < net->chain_count; i++) {
-    const CagFacetChain c = net->chains[i];
+    const CagRecognizedChain c = net->chains[i];
     const bool is_short = chain_length(net, &c) < SHORT * w->tolerance;
     if (is_short && c.ends[0] != c.ends[1])
       one[root_of(one, (uint32_t)c.ends[0])] = root_of(one, (uint32_t)c.ends[1]);
@@ -336,9 +336,9 @@ static CagStatus drop_short_chains(NetWork *w, CagError *err) {
   return CAG_OK;
 }
 
-CagStatus cag_facet_net(const CagMesh *m, const CagFacetSources *sources, double tolerance,
-                        CagFacetNet *out, CagError *err) {
-  CagFacetNet net = {.mesh = m};
+CagStatus cag_recognized_net(const CagMesh *m, const CagRecognizedSources *sources,
+                             double tolerance, CagRecognizedNet *out, CagError *err) {
+  CagRecognizedNet net = {.mesh = m};
   NetWork w = {.net = &net, .tolerance = tolerance};
   CagStatus status = CAG_OK;
   if (!m->labels || m->triangle_count == 0)
@@ -349,7 +349,7 @@ CagStatus cag_facet_net(const CagMesh *m, const CagFacetSources *sources, double
   if (!status) status = find_chains(&w, err);
   if (!status) status = drop_short_chains(&w, err);
   work_free(&w);
-  if (status) cag_facet_net_free(&net);
+  if (status) cag_recognized_net_free(&net);
   else *out = net;
   return status;
 }

@@ -1,6 +1,6 @@
-// Boundaries from meshes (see facets.h).
+// Boundaries from meshes (see recognized.h).
 
-#include "geom/solid/facets.h"
+#include "geom/solid/recognized.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -12,34 +12,34 @@
 #include "base/stop.h"
 #include "geom/boundary/carrier.h"
 #include "geom/solid/exact.h"
-#include "geom/solid/facet_curve.h"
-#include "geom/solid/facet_net.h"
+#include "geom/solid/recognized_curve.h"
+#include "geom/solid/recognized_net.h"
 
 // Points move by at most this multiple of the tolerance to their carriers.
 #define MOVE 25
 // Angles of the vertices of a face that leave a larger gap do not go all around (radians).
 #define GAP 0.8
 
-typedef struct Facets {
-  CagFacetSources sources;
+typedef struct Recognition {
+  CagRecognizedSources sources;
   CagMesh *mesh;
-  CagFacetNet net;
+  CagRecognizedNet net;
   CagBoundary b;
   double size, tolerance;
   size_t *edge_of; // by chains: the edge, plus 1; 0: none
   size_t *face_of; // by regions: likewise
-} Facets;
+} Recognition;
 
-static void facets_free(Facets *f) {
-  cag_facet_sources_free(&f->sources);
-  cag_facet_net_free(&f->net);
+static void recognition_free(Recognition *f) {
+  cag_recognized_sources_free(&f->sources);
+  cag_recognized_net_free(&f->net);
   cag_mesh_release(f->mesh);
   cag_boundary_free(&f->b);
   cag_free(f->edge_of);
   cag_free(f->face_of);
 }
 
-static const CagCarrier *region_carrier(const Facets *f, uint32_t region) {
+static const CagCarrier *region_carrier(const Recognition *f, uint32_t region) {
   return &f->sources.items[f->net.source[region]];
 }
 
@@ -51,19 +51,19 @@ typedef struct Meeting {
   size_t n;
 } Meeting;
 
-static void add_meeting(const Facets *f, Meeting *m, uint32_t region) {
+static void add_meeting(const Recognition *f, Meeting *m, uint32_t region) {
   for (size_t i = 0; i < m->n; i++)
     if (f->net.source[m->regions[i]] == f->net.source[region]) return;
   if (m->n < 3) m->regions[m->n++] = region;
 }
 
-static CagStatus find_corners(Facets *f, CagError *err) {
+static CagStatus find_corners(Recognition *f, CagError *err) {
   const size_t n = f->net.corner_count;
   Meeting *met = cag_calloc(n + 1, sizeof *met);
   f->b.corners = cag_calloc(n + 1, sizeof *f->b.corners);
   CagStatus status = met && f->b.corners ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < f->net.chain_count; i++) {
-    const CagFacetChain *c = &f->net.chains[i];
+    const CagRecognizedChain *c = &f->net.chains[i];
     for (int k = 0; k < 2 && !c->closed; k++)
       for (int side = 0; side < 2; side++) add_meeting(f, &met[c->ends[k]], c->sides[side]);
   }
@@ -74,8 +74,8 @@ static CagStatus find_corners(Facets *f, CagError *err) {
     for (size_t k = 0; k < met[i].n; k++) carriers[k] = region_carrier(f, met[i].regions[k]);
     status = cag_stop_check(err);
     if (!status && met[i].n > 1)
-      status = cag_facet_settle(carriers, met[i].n, MOVE * f->tolerance, &f->b.corners[i], &settled,
-                                err);
+      status = cag_recognized_settle(carriers, met[i].n, MOVE * f->tolerance, &f->b.corners[i],
+                                     &settled, err);
   }
   f->b.corner_count = n;
   cag_free(met);
@@ -84,7 +84,7 @@ static CagStatus find_corners(Facets *f, CagError *err) {
 
 // --- Edges ---
 
-static CagStatus chain_curve(const Facets *f, const CagFacetChain *c, CagCurve **out,
+static CagStatus chain_curve(const Recognition *f, const CagRecognizedChain *c, CagCurve **out,
                              CagError *err) {
   const CagCarrier *carriers[2] = {region_carrier(f, c->sides[0]), region_carrier(f, c->sides[1])};
   CagVec3 *points = cag_malloc((c->count + 1) * sizeof *points);
@@ -94,23 +94,23 @@ static CagStatus chain_curve(const Facets *f, const CagFacetChain *c, CagCurve *
     points[0] = f->b.corners[c->ends[0]];
     points[c->count - 1] = f->b.corners[c->ends[1]];
   }
-  CagStatus status = cag_facet_curve(carriers, points, c->count, c->closed, f->size,
-                                     MOVE * f->tolerance, out, err);
+  CagStatus status = cag_recognized_curve(carriers, points, c->count, c->closed, f->size,
+                                          MOVE * f->tolerance, out, err);
   cag_free(points);
   return status;
 }
 
-static bool is_known(const Facets *f, uint32_t region) {
+static bool is_known(const Recognition *f, uint32_t region) {
   return region_carrier(f, region)->kind != CAG_CARRIER_NONE;
 }
 
-static CagStatus find_edges(Facets *f, CagError *err) {
+static CagStatus find_edges(Recognition *f, CagError *err) {
   const size_t n = f->net.chain_count;
   f->b.edges = cag_calloc(n + 1, sizeof *f->b.edges);
   f->edge_of = cag_calloc(n + 1, sizeof *f->edge_of);
   CagStatus status = f->b.edges && f->edge_of ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
-    const CagFacetChain *c = &f->net.chains[i];
+    const CagRecognizedChain *c = &f->net.chains[i];
     CagCurve *curve;
     status = cag_stop_check(err);
     if (status || !is_known(f, c->sides[0]) || !is_known(f, c->sides[1])) continue;
@@ -127,12 +127,12 @@ static CagStatus find_edges(Facets *f, CagError *err) {
 // --- Faces ---
 
 // The uses of the edges of a face, loop by loop.
-static CagStatus add_use(Facets *f, size_t edge, bool reversed, const CagCarrier *carrier,
+static CagStatus add_use(Recognition *f, size_t edge, bool reversed, const CagCarrier *carrier,
                          CagError *err) {
   CagBoundary *b = &f->b;
   CagCurve *trace;
   if (!CAG_RESERVE(b->uses, b->use_room, b->use_count + 1)) return cag_fail_memory(err);
-  CagStatus status = cag_facet_trace(carrier, b->edges[edge].curve, &trace, err);
+  CagStatus status = cag_recognized_trace(carrier, b->edges[edge].curve, &trace, err);
   if (!status) b->uses[b->use_count++] = (CagBoundaryUse){edge, reversed, trace};
   return status;
 }
@@ -143,7 +143,7 @@ static size_t use_end(const CagBoundary *b, size_t use, bool at_end) {
 }
 
 // Divides the uses of a face into loops.
-static CagStatus add_loops(Facets *f, CagBoundaryFace *face, size_t first, CagError *err) {
+static CagStatus add_loops(Recognition *f, CagBoundaryFace *face, size_t first, CagError *err) {
   CagBoundary *b = &f->b;
   face->first = b->loop_count;
   for (size_t at = first; at < b->use_count;) {
@@ -182,7 +182,7 @@ static CagVec3 triangle_cross(const CagMesh *m, size_t t) {
 static CagStatus spline_normal(const CagCarrier *c, CagVec3 p, CagVec3 *out, CagError *err);
 
 // Compares the normals of triangles with that of the carrier, and finds the parameters of a face.
-static CagStatus orient_faces(Facets *f, double *turn, CagError *err) {
+static CagStatus orient_faces(Recognition *f, double *turn, CagError *err) {
   CagStatus status = CAG_OK;
   for (size_t t = 0; !status && t < f->mesh->triangle_count; t++) {
     const uint32_t region = f->net.region[t];
@@ -218,7 +218,7 @@ static void angle_range(double *values, size_t n, double out[2]) {
   out[1] = out[0] + 2 * M_PI - (most < GAP ? 0 : most);
 }
 
-static CagStatus face_domain(const Facets *f, uint32_t region, CagBoundaryFace *face,
+static CagStatus face_domain(const Recognition *f, uint32_t region, CagBoundaryFace *face,
                              CagError *err) {
   const CagCarrier *c = &face->carrier;
   if (c->kind == CAG_CARRIER_SPLINE) {
@@ -249,7 +249,7 @@ static CagStatus face_domain(const Facets *f, uint32_t region, CagBoundaryFace *
   return status;
 }
 
-static CagStatus find_faces(Facets *f, const double *turn, CagError *err) {
+static CagStatus find_faces(Recognition *f, const double *turn, CagError *err) {
   CagBoundary *b = &f->b;
   CagStatus status = CAG_OK;
   for (uint32_t r = 0; !status && r < f->net.region_count; r++) {
@@ -275,7 +275,7 @@ static CagStatus spline_normal(const CagCarrier *c, CagVec3 p, CagVec3 *out, Cag
   CagVec3 at;
   CagStatus status = cag_curve_line(p, cag_add(p, cag_vec3(1e-9, 0, 0)), 3, &point, err);
   if (status) return status;
-  status = cag_facet_trace(c, point, &trace, err);
+  status = cag_recognized_trace(c, point, &trace, err);
   cag_curve_release(point);
   if (status) return status;
   status = cag_curve_point(trace, trace->start, &at, err);
@@ -288,12 +288,12 @@ static CagStatus spline_normal(const CagCarrier *c, CagVec3 p, CagVec3 *out, Cag
 // --- The whole ---
 
 // The labels of the mesh become the faces, plus 1.
-static void label_faces(Facets *f) {
+static void label_faces(Recognition *f) {
   for (size_t t = 0; t < f->mesh->triangle_count; t++)
     f->mesh->labels[t] = (uint32_t)f->face_of[f->net.region[t]];
 }
 
-static CagStatus finish(Facets *f, CagError *err) {
+static CagStatus finish(Recognition *f, CagError *err) {
   CagBoundary *b = &f->b;
   double terms[10] = {0};
   b->shells = cag_calloc(2, sizeof *b->shells);
@@ -312,7 +312,7 @@ static CagStatus finish(Facets *f, CagError *err) {
   return CAG_OK;
 }
 
-static CagStatus find_boundary(Facets *f, CagError *err) {
+static CagStatus find_boundary(Recognition *f, CagError *err) {
   const size_t regions = f->net.region_count;
   double *turn = cag_calloc(regions + 1, sizeof *turn);
   f->face_of = cag_calloc(regions + 1, sizeof *f->face_of);
@@ -327,15 +327,15 @@ static CagStatus find_boundary(Facets *f, CagError *err) {
   return status;
 }
 
-CagStatus cag_solid_facets(const CagSolid *s, double tolerance, CagSolid **out, CagError *err) {
-  Facets f = {.tolerance = tolerance};
-  CagStatus status = cag_facet_mesh(s, tolerance, &f.sources, &f.mesh, err);
+CagStatus cag_solid_recognized(const CagSolid *s, double tolerance, CagSolid **out, CagError *err) {
+  Recognition f = {.tolerance = tolerance};
+  CagStatus status = cag_recognized_mesh(s, tolerance, &f.sources, &f.mesh, err);
   if (status) return status;
   const CagBounds box = cag_mesh_bounds(f.mesh);
   f.size = cag_norm(cag_sub(box.max, box.min));
-  status = cag_facet_net(f.mesh, &f.sources, tolerance, &f.net, err);
+  status = cag_recognized_net(f.mesh, &f.sources, tolerance, &f.net, err);
   if (!status) status = find_boundary(&f, err);
   if (!status) status = cag_solid_exact(&f.b, 1, out, err);
-  facets_free(&f);
+  recognition_free(&f);
   return status;
 }
