@@ -675,7 +675,7 @@ static CagStatus add_capsule(Pieces *out, const Solid *s, const Body *b, const S
     }
     status = put_triangle(out, at, normals, err);
   }
-  if (!status) cag_mesh_release(hull);
+  cag_mesh_release(hull);
   cag_free(points);
   return status;
 }
