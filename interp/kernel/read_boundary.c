@@ -20,6 +20,8 @@
 // How far a curve may end from its corner: this multiple of what the edge says, and of rounding.
 #define END_SLACK 4.0
 #define END_ROUNDING 1e-9
+// Traces whose ranges differ from those of their edges by less than this fraction get these.
+#define SAME_RANGE 1e-9
 
 static CagStatus bad_answer(CagError *err) {
   return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
@@ -292,6 +294,20 @@ static CagStatus read_edges(CagFieldReader *r, CagBoundary *b, Ranges *ranges, C
   return status;
 }
 
+// Gives a trace the range of its edge. The knots of splines may be rounded differently.
+static CagStatus fit_trace(CagCurve **trace, double start, double end, CagError *err) {
+  const CagCurve *t = *trace;
+  const double room = SAME_RANGE * (end - start);
+  CagCurve *fitted;
+  if (t->start == start && t->end == end) return CAG_OK;
+  if (fabs(t->start - start) > room || fabs(t->end - end) > room) return CAG_OK;
+  const CagStatus status = cag_curve_reparametrize(t, start, end, &fitted, err);
+  if (status) return status;
+  cag_curve_release(*trace);
+  *trace = fitted;
+  return CAG_OK;
+}
+
 static CagStatus read_use(CagFieldReader *r, CagBoundary *b, Ranges ranges, CagError *err) {
   if (!CAG_RESERVE(b->uses, b->use_room, b->use_count + 1)) return cag_fail_memory(err);
   CagBoundaryUse use = {.edge = cag_take_u32(r)};
@@ -299,9 +315,11 @@ static CagStatus read_use(CagFieldReader *r, CagBoundary *b, Ranges ranges, CagE
   if (r->bad || use.edge >= b->edge_count) return bad_answer(err);
   const double *range = ranges[use.edge];
   if (range[0] > range[1]) use.reversed = !use.reversed;
-  CagStatus status =
-      read_kind(r, 2, fmin(range[0], range[1]), fmax(range[0], range[1]), &use.trace, err);
+  const double start = fmin(range[0], range[1]), end = fmax(range[0], range[1]);
+  CagStatus status = read_kind(r, 2, start, end, &use.trace, err);
+  if (!status) status = fit_trace(&use.trace, start, end, err);
   if (!status) b->uses[b->use_count++] = use;
+  else cag_curve_release(use.trace);
   return status;
 }
 
