@@ -40,6 +40,15 @@ static CagStatus instead(CagCall *call, CagStatus kernel, CagStatus meshed, cons
   return !meshed || cag_is_final(meshed) ? meshed : kernel;
 }
 
+// The result of a solid whose boundary is recognized in its mesh. If that fails, a missing kernel
+// (`kernel`: why the boundary is not its own) is what the user can mend.
+static bool meshed_result(CagCall *call, const CagError *kernel, CagStatus status, CagSolid **made,
+                          CagValue *result) {
+  if (status && !cag_is_final(status) && kernel->id == CAG_ERR_kernel_missing)
+    return cag_fail_geometry(call, kernel);
+  return cag_exacts_changed(call, status, made, result);
+}
+
 // The chosen faces, held by the call.
 static const CagSolidFace *chosen_faces(CagCall *call, const CagChosen *chosen, size_t n) {
   CagSolidFace *faces = cag_hold_array(call, n, sizeof *faces);
@@ -91,12 +100,13 @@ bool cag_exacts_shell(CagCall *call, const struct cag_exacts_shell *a, CagValue 
   CagStatus status = cag_exacts_of_solid(call, a->G, true, &s);
   // The choice is one of faces of the boundary.
   if (status && (cag_is_final(status) || cag_given(call, 2))) return cag_geometry_ok(call, status);
+  const CagError kernel = *call->err;
   if (!status) {
     p = cag_exact_parts_of(call, s);
     if (!p || !cag_chosen_faces(p, 2, &open, &n)) return false;
     if (cag_exact_parts_meshed(p)) {
       status = mesh_shell(call, a, p, open, n, &made, call->err);
-      return cag_exacts_changed(call, status, &made, result);
+      return meshed_result(call, &kernel, status, &made, result);
     }
     status = kernel_shell(p, a, open, n, &made);
   }
@@ -148,9 +158,12 @@ bool cag_exacts_draft(CagCall *call, const struct cag_exacts_draft *a, CagValue 
   CagChosen *chosen;
   CagError err;
   size_t n;
+  const CagError kernel = *call->err;
   if (!p || !cag_chosen_faces(p, 2, &chosen, &n)) return false;
-  if (cag_exact_parts_meshed(p))
-    return cag_exacts_changed(call, mesh_draft(p, a, chosen, n, &made, call->err), &made, result);
+  if (cag_exact_parts_meshed(p)) {
+    const CagStatus meshed = mesh_draft(p, a, chosen, n, &made, call->err);
+    return meshed_result(call, &kernel, meshed, &made, result);
+  }
   CagStatus status = kernel_draft(p, a, chosen, n, &made);
   if (status && !cag_is_final(status))
     status = instead(call, status, mesh_draft(p, a, chosen, n, &made, &err), &err);

@@ -352,12 +352,15 @@ static CagStatus roll_found_edges(const Blending *b, CagSolid **out, CagError *e
   return status ? status : roll_edges(&other, NULL, out, err);
 }
 
-static bool blend_meshed(const Blending *b, CagValue *result) {
+// kernel: why the boundary is not the kernel's.
+static bool blend_meshed(const Blending *b, const CagError *kernel, CagValue *result) {
   CagCall *call = b->parts->call;
   CagRollLimit limit;
   CagSolid *made = NULL;
   const CagStatus status = roll_edges(b, &limit, &made, call->err);
-  if (status && !cag_is_final(status)) return fail_rolled(b, &limit);
+  if (status && !cag_is_final(status))
+    return kernel->id == CAG_ERR_kernel_missing ? cag_fail_geometry(call, kernel)
+                                                : fail_rolled(b, &limit);
   return cag_exacts_changed(call, status, &made, result);
 }
 
@@ -369,8 +372,9 @@ static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result
   CagSolid *made = NULL;
   if (!cag_is_function(size) && !read_sizes(call, words, size, sizes)) return false;
   CagExactParts *p = cag_exact_parts(call, 0, true);
+  const CagError unmeshed = *call->err;
   if (!p || !read_blending(p, words, &b)) return false;
-  if (cag_exact_parts_meshed(p)) return blend_meshed(&b, result);
+  if (cag_exact_parts_meshed(p)) return blend_meshed(&b, &unmeshed, result);
   CagStatus status = ask_kernel(&b, &made, &failure);
   if (status && !cag_is_final(status)) {
     const CagError kernel = *call->err;
