@@ -133,6 +133,8 @@ static bool choose_from_list(Choice *c, const CagList *given) {
 static bool choose(Choice *c) {
   CagCall *call = c->p->call;
   const CagValue given = call->values[c->argument];
+  if (given.type != CAG_LIST && !cag_is_function(given))
+    return cag_fail_type(call, c->argument, "a function or a list of records");
   if (!make_records(c)) return false;
   return given.type == CAG_LIST ? choose_from_list(c, CAG_AS_LIST(given))
                                 : choose_by_function(c, given);
