@@ -7,28 +7,15 @@
 #include "base/memory.h"
 #include "geom/boundary/carrier.h"
 
-static CagVec3 triangle_middle(const CagMesh *m, size_t t) {
-  const uint32_t *v = m->triangles + 3 * t;
-  return cag_scaled(cag_add(cag_add(m->positions[v[0]], m->positions[v[1]]), m->positions[v[2]]),
-                    1.0 / 3);
-}
-
-// Twice the area times the normal.
-static CagVec3 triangle_cross(const CagMesh *m, size_t t) {
-  const uint32_t *v = m->triangles + 3 * t;
-  const CagVec3 a = m->positions[v[0]];
-  return cag_cross(cag_sub(m->positions[v[1]], a), cag_sub(m->positions[v[2]], a));
-}
-
 // The outward normal near a triangle.
 static CagStatus normal_at(const CagBoundary *b, size_t face, size_t t, CagVec3 *out,
                            CagError *err) {
   const CagBoundaryFace *f = &b->faces[face];
   const double near[2] = {0, 0};
   double uv[2];
-  *out = cag_unit(triangle_cross(b->mesh, t));
+  *out = cag_unit(cag_meshed_cross(b->mesh, t));
   if (!cag_carrier_is_analytic(&f->carrier)) return CAG_OK;
-  cag_carrier_parameters(&f->carrier, triangle_middle(b->mesh, t), near, uv);
+  cag_carrier_parameters(&f->carrier, cag_meshed_middle(b->mesh, t), near, uv);
   CagStatus status = cag_carrier_normal(&f->carrier, uv[0], uv[1], out, err);
   if (!status && f->reversed) *out = cag_scaled(*out, -1);
   return status;
@@ -42,16 +29,16 @@ CagStatus cag_meshed_face(const CagBoundary *b, size_t face, CagFaceFeature *out
   double least = INFINITY;
   for (size_t t = 0; t < m->triangle_count; t++) {
     if (m->labels[t] != face + 1) continue;
-    const double area = cag_norm(triangle_cross(m, t)) / 2;
+    const double area = cag_norm(cag_meshed_cross(m, t)) / 2;
     f.area += area;
-    f.center = cag_madd(f.center, area, triangle_middle(m, t));
+    f.center = cag_madd(f.center, area, cag_meshed_middle(m, t));
     for (int k = 0; k < 3; k++)
       cag_bounds_add(&f.bounds, m->positions[m->triangles[3 * t + (size_t)k]]);
   }
   if (f.area > 0) f.center = cag_scaled(f.center, 1 / f.area);
   for (size_t t = 0; t < m->triangle_count; t++) {
     if (m->labels[t] != face + 1) continue;
-    const double distance = cag_norm(cag_sub(triangle_middle(m, t), f.center));
+    const double distance = cag_norm(cag_sub(cag_meshed_middle(m, t), f.center));
     if (!(distance < least)) continue;
     least = distance;
     nearest = t;

@@ -27,8 +27,8 @@ typedef struct CagFaceSteps {
 } CagFaceSteps;
 
 void cag_face_steps_add(CagFaceSteps *f, double weight, CagVec3 normal, double distance);
-// The step by which all faces move by their distances, in the least squares: the shortest one, if
-// the faces have fewer than three directions. Returns false if there are no faces.
+// Finds the step that moves each face by its distance, by least squares. If several steps do, it is
+// the shortest. Returns false if there are no faces.
 bool cag_face_steps_solve(const CagFaceSteps *f, CagVec3 *step);
 
 // The point of corner i of the triangles, counting all of them: the first of welded vertices.

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "base/stop.h"
 #include "geom/boundary/carrier.h"
+#include "geom/boundary/meshed.h"
 #include "geom/solid/exact.h"
 #include "geom/solid/recognized_curve.h"
 #include "geom/solid/recognized_net.h"
@@ -166,19 +167,6 @@ static CagStatus add_loops(Recognition *f, CagBoundaryFace *face, size_t first, 
   return CAG_OK;
 }
 
-static CagVec3 triangle_middle(const CagMesh *m, size_t t) {
-  const uint32_t *v = m->triangles + 3 * t;
-  return cag_scaled(cag_add(cag_add(m->positions[v[0]], m->positions[v[1]]), m->positions[v[2]]),
-                    1.0 / 3);
-}
-
-// Twice the area times the normal.
-static CagVec3 triangle_cross(const CagMesh *m, size_t t) {
-  const uint32_t *v = m->triangles + 3 * t;
-  const CagVec3 a = m->positions[v[0]];
-  return cag_cross(cag_sub(m->positions[v[1]], a), cag_sub(m->positions[v[2]], a));
-}
-
 static CagStatus spline_normal(const CagCarrier *c, CagVec3 p, CagVec3 *out, CagError *err);
 
 // Compares the normals of triangles with that of the carrier, and finds the parameters of a face.
@@ -187,7 +175,7 @@ static CagStatus orient_faces(Recognition *f, double *turn, CagError *err) {
   for (size_t t = 0; !status && t < f->mesh->triangle_count; t++) {
     const uint32_t region = f->net.region[t];
     const CagCarrier *c = region_carrier(f, region);
-    const CagVec3 middle = triangle_middle(f->mesh, t);
+    const CagVec3 middle = cag_meshed_middle(f->mesh, t);
     const double near[2] = {0, 0};
     double uv[2];
     CagVec3 normal;
@@ -198,7 +186,7 @@ static CagStatus orient_faces(Recognition *f, double *turn, CagError *err) {
       status = cag_carrier_normal(c, uv[0], uv[1], &normal, err);
     } else if (turn[region] == 0) status = spline_normal(c, middle, &normal, err);
     else continue;
-    if (!status) turn[region] += cag_dot(normal, triangle_cross(f->mesh, t));
+    if (!status) turn[region] += cag_dot(normal, cag_meshed_cross(f->mesh, t));
   }
   return status;
 }

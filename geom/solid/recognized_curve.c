@@ -224,6 +224,18 @@ typedef struct Conic {
   double a, b;
 } Conic;
 
+static CagTransform conic_frame(CagVec3 x, CagVec3 y, CagVec3 z, CagVec3 center) {
+  const CagVec3 columns[4] = {x, y, z, center};
+  CagTransform frame = cag_transform_identity();
+  frame.planar = false;
+  for (int k = 0; k < 4; k++) {
+    frame.m[0][k] = columns[k].x;
+    frame.m[1][k] = columns[k].y;
+    frame.m[2][k] = columns[k].z;
+  }
+  return frame;
+}
+
 static bool circle_through(const CurvePoints *c, Conic *out) {
   const CagVec3 p = c->at[0], q = c->at[c->n / 3], r = c->at[2 * c->n / 3];
   const CagVec3 a = cag_sub(q, p), b = cag_sub(r, p), normal = cag_cross(a, b);
@@ -233,14 +245,7 @@ static bool circle_through(const CurvePoints *c, Conic *out) {
                                         cag_scaled(cag_cross(normal, a), cag_dot(b, b))),
                                 1 / (2 * square));
   const CagVec3 center = cag_add(p, to), z = cag_unit(normal), x = cag_unit(cag_scaled(to, -1));
-  const CagVec3 y = cag_cross(z, x), columns[4] = {x, y, z, center};
-  out->frame = cag_transform_identity();
-  out->frame.planar = false;
-  for (int k = 0; k < 4; k++) {
-    out->frame.m[0][k] = columns[k].x;
-    out->frame.m[1][k] = columns[k].y;
-    out->frame.m[2][k] = columns[k].z;
-  }
+  out->frame = conic_frame(x, cag_cross(z, x), z, center);
   out->a = out->b = cag_norm(to);
   for (size_t i = 0; i < c->n; i++) {
     const CagVec3 d = cag_sub(c->at[i], center);
@@ -261,14 +266,8 @@ static bool ellipse_of(const CurvePoints *c, Conic *out) {
   if (fabs(slope) < TANGENT || across < TANGENT) return false;
   const double along = cag_dot(cag_sub(cag_frame_column(&plane->frame, 3), o), n) / slope;
   const CagVec3 center = cag_madd(o, along, z), x = cag_unit(cag_madd(z, -slope, n));
-  const CagVec3 y = cag_cross(n, x), columns[4] = {x, y, n, center};
-  out->frame = cag_transform_identity();
-  out->frame.planar = false;
-  for (int k = 0; k < 4; k++) {
-    out->frame.m[0][k] = columns[k].x;
-    out->frame.m[1][k] = columns[k].y;
-    out->frame.m[2][k] = columns[k].z;
-  }
+  const CagVec3 y = cag_cross(n, x);
+  out->frame = conic_frame(x, y, n, center);
   out->a = round->a / fabs(slope);
   out->b = round->a;
   for (size_t i = 0; i < c->n; i++) {

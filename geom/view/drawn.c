@@ -293,7 +293,7 @@ static CagStatus cut_cusps(CagDrawnLine *l, CagError *err) {
 
 // --- Cuts of two lines ---
 
-// Errors of one pair of curves are no errors of the drawing, unless the work must stop.
+// If a pair of curves fails, the drawing goes on without it, unless the work must stop.
 static CagStatus forgive(CagStatus status, CagError *err) {
   if (status == CAG_E_MEMORY || status == CAG_E_CALLBACK) return status;
   return cag_stop_check(err);

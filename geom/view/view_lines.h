@@ -36,8 +36,8 @@ CagStatus cag_view_lines_add(CagViewLines *l, CagCurve *c, const CagSurface *fol
 //
 // Of an exact solid, the edges are those of its boundary, and of other solids and surfaces they are
 // the edges and creases of the faces. An edge at which the faces meet smoothly (the normals differ
-// by less than 1e-3) is no line, unless the faces are parallel to the direction along it, so that it
-// is a part of the outline. The contours of curved faces are lines, circles, and other conics where
+// by less than 1e-3) is left out, unless it is part of the outline: the faces are then parallel to
+// the direction along it. The contours of curved faces are lines, circles, and other conics where
 // they are such, else cubics within 2e-7 of the size. The edges of a mesh are those at which it ends,
 // those at which it bends by more than 30 degrees, and those between triangles in front and at the
 // back.

@@ -40,8 +40,8 @@ static CagStatus instead(CagCall *call, CagStatus kernel, CagStatus meshed, cons
   return !meshed || cag_is_final(meshed) ? meshed : kernel;
 }
 
-// The result of a solid whose boundary is recognized in its mesh. If that fails, a missing kernel
-// (`kernel`: why the boundary is not its own) is what the user can mend.
+// The result of a solid whose boundary is recognized in its mesh. `kernel` tells why the kernel did
+// not compute it. If the mesh fails as well, and the kernel is missing, the error names its package.
 static bool meshed_result(CagCall *call, const CagError *kernel, CagStatus status, CagSolid **made,
                           CagValue *result) {
   if (status && !cag_is_final(status) && kernel->id == CAG_ERR_kernel_missing)

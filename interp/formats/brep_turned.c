@@ -91,7 +91,7 @@ static bool is_curved(const Side *s) {
   return s->kind != CAG_CARRIER_NONE && s->kind != CAG_CARRIER_PLANE;
 }
 
-// The middle of a disk is no corner.
+// The center of a disk is not a corner.
 static void make_corners(const Turn *t, const CagFormPiece *p, Side *s, const Side *before) {
   CagFormWork *w = t->work;
   if (p->from.x == 0 && t->full && !is_curved(s) && !is_curved(before)) return;
