@@ -122,13 +122,21 @@ bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagVal
   return true;
 }
 
-void cag_exacts_say_tier(CagCall *call, const char *tier, const char *what, size_t count) {
+// "fillet: tier B: kernel; edges: 3"
+static void trace(CagCall *call, const char *tier, const char *what, CagValue value) {
   char label[128];
-  if (!call->vm->verbose) return;
   const char *signature = call->builtin->signature;
   snprintf(label, sizeof label, "%.*s: %s; %s", (int)strcspn(signature, "("), signature, tier,
            what);
-  cag_vm_trace(call, cag_number((double)count), label);
+  cag_vm_trace(call, value, label);
+}
+
+void cag_exacts_say_tier(CagCall *call, const char *tier, const char *what, size_t count) {
+  if (call->vm->verbose) trace(call, tier, what, cag_number((double)count));
+}
+
+void cag_exacts_say_refused(CagCall *call, const char *tier, const CagError *why) {
+  if (call->vm->verbose) trace(call, tier, "failed", cag_text_c(call->vm, why->message));
 }
 
 bool cag_exacts_exact(CagCall *call, const struct cag_exacts_exact *a, CagValue *result) {

@@ -30,6 +30,8 @@ CagStatus cag_exacts_checked(CagBoundaries *parts, CagSolid **out, CagError *err
 bool cag_exacts_result(CagCall *call, CagBoundaries *parts, int argument, CagValue *result);
 // With -v, writes how a result was computed ("tier B: kernel"), and a count ("edges").
 void cag_exacts_say_tier(CagCall *call, const char *tier, const char *what, size_t count);
+// With -v, writes why a result was not computed in a way, after which another one is tried.
+void cag_exacts_say_refused(CagCall *call, const char *tier, const CagError *why);
 // The tolerance of results that are meshes because the kernel failed (tier C): that of the script,
 // or 3/10000 of the size of the solid.
 CagStatus cag_exacts_tolerance(CagCall *call, const CagSolid *s, double *out, CagError *err);

@@ -69,6 +69,7 @@ static CagStatus mesh_shell(CagCall *call, const struct cag_exacts_shell *a, Cag
   tolerance = fmin(tolerance, WALL * a->thickness);
   status = cag_solid_hollow(s, a->thickness, a->outside, faces, n, tolerance, out, err);
   if (!status) say_meshed(call, "offsets of the mesh", tolerance, "open faces", n);
+  else cag_exacts_say_refused(call, "tier C: offsets of the mesh", err);
   return status;
 }
 
@@ -87,6 +88,7 @@ static CagStatus kernel_shell(CagExactParts *p, const struct cag_exacts_shell *a
   }
   if (!status) status = cag_exact_parts_solid(p, out);
   if (!status) cag_exacts_say_tier(p->call, "tier B: kernel", "open faces", n);
+  else cag_exacts_say_refused(p->call, "tier B: kernel", p->call->err);
   return status;
 }
 
@@ -128,6 +130,7 @@ static CagStatus mesh_draft(CagExactParts *p, const struct cag_exacts_draft *a,
   status = cag_solid_incline(p->solid, faces, n, a->angle, a->at.at, cag_unit(a->pull.at),
                              tolerance, out, err);
   if (!status) say_meshed(call, "moved faces of the mesh", tolerance, "faces", n);
+  else cag_exacts_say_refused(call, "tier C: moved faces of the mesh", err);
   return status;
 }
 
@@ -149,6 +152,7 @@ static CagStatus kernel_draft(CagExactParts *p, const struct cag_exacts_draft *a
   }
   if (!status) status = cag_exact_parts_solid(p, out);
   if (!status) cag_exacts_say_tier(p->call, "tier B: kernel", "faces", n);
+  else cag_exacts_say_refused(p->call, "tier B: kernel", p->call->err);
   return status;
 }
 

@@ -379,8 +379,14 @@ static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result
   if (status && !cag_is_final(status)) {
     const CagError kernel = *call->err;
     CagError err;
+    cag_exacts_say_refused(call, "tier B: kernel", &kernel);
     CagStatus rolled = roll_edges(&b, NULL, &made, &err);
-    if (rolled && !cag_is_final(rolled)) rolled = roll_found_edges(&b, &made, &err);
+    if (rolled && !cag_is_final(rolled)) {
+      cag_exacts_say_refused(call, "tier C: rolling ball on the mesh", &err);
+      rolled = roll_found_edges(&b, &made, &err);
+      if (rolled && !cag_is_final(rolled))
+        cag_exacts_say_refused(call, "tier C: rolling ball on edges found in the mesh", &err);
+    }
     *call->err = cag_is_final(rolled) ? err : kernel;
     if (!rolled || cag_is_final(rolled)) status = rolled;
   }
