@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "base/stop.h"
+#include "geom/mesh/polygon.h"
 
 // The largest turn between neighboring facets of an arc, in radians, and the largest number of
 // them.
@@ -86,35 +87,28 @@ static void add_quad(Builder *b, size_t i, size_t j, size_t k, size_t l) {
 // Adds a polygon that has no self-intersections seen along its normal, of n points.
 static CagStatus add_polygon(Builder *b, const size_t *corners, size_t n, bool reversed,
                              CagError *err) {
-  CagVec3 normal = {0, 0, 0}, first = b->points[corners[0]];
-  for (size_t i = 1; i + 1 < n; i++)
-    normal = cag_add(normal, cag_cross(cag_sub(b->points[corners[i]], first),
-                                       cag_sub(b->points[corners[i + 1]], first)));
-  normal = cag_unit(normal);
-  const CagVec3 off = fabs(normal.x) < 0.6 ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
-  const CagVec3 x = cag_unit(cag_cross(off, normal)), y = cag_cross(normal, x);
-  double *xy = cag_calloc(2 * n, sizeof *xy);
-  uint32_t *found = NULL;
-  size_t count = 0;
-  if (!xy) return cag_fail_memory(err);
-  for (size_t i = 0; i < n; i++) {
-    const CagVec3 p = cag_sub(b->points[corners[i]], first);
-    xy[2 * i] = cag_dot(p, x), xy[2 * i + 1] = cag_dot(p, y);
-  }
-  CagStatus status = cag_triangulate(xy, &n, 1, &found, &count, err);
-  cag_free(xy);
-  if (cag_is_final(status)) return status;
-  if (status || count != n - 2) {
-    cag_free(found);
-    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
-                    "a section of the rounding crosses itself");
-  }
-  for (size_t i = 0; i < count; i++) {
+  uint32_t *face = cag_calloc(4 * n, sizeof *face), *found = face + n;
+  if (!face) return cag_fail_memory(err);
+  for (size_t i = 0; i < n; i++) face[i] = (uint32_t)corners[i];
+  CagStatus status = cag_polygon_triangulate(b->points, face, n, 0, found, err);
+  for (size_t i = 0; !status && i < n - 2; i++) {
     const uint32_t *t = found + 3 * i;
-    add_triangle(b, corners[t[0]], corners[t[reversed ? 2 : 1]], corners[t[reversed ? 1 : 2]]);
+    add_triangle(b, t[0], t[reversed ? 2 : 1], t[reversed ? 1 : 2]);
   }
-  cag_free(found);
-  return CAG_OK;
+  cag_free(face);
+  if (!status || cag_is_final(status)) return status;
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
+                  "a section of the rounding crosses itself");
+}
+
+CagStatus cag_roll_ring_is_simple(const CagVec3 *ring, size_t size, bool *out, CagError *err) {
+  uint32_t *face = cag_calloc(4 * size, sizeof *face);
+  if (!face) return cag_fail_memory(err);
+  for (size_t i = 0; i < size; i++) face[i] = (uint32_t)i;
+  const CagStatus status = cag_polygon_triangulate(ring, face, size, 0, face + size, err);
+  cag_free(face);
+  *out = !status;
+  return cag_is_final(status) ? status : CAG_OK;
 }
 
 // The mesh, with its triangles outward; frees the builder.

@@ -19,6 +19,8 @@ CagVec3 cag_roll_arc_direction(CagVec3 a, CagVec3 b, double t);
 // The points around a section: those of the arc, then those beyond the faces by the distance
 // `lift`. The first and last chord of the arc are lengthened, so that they cross the faces.
 void cag_roll_ring(const CagRollSection *s, size_t arc, double lift, CagVec3 *out);
+// Whether a ring does not cross itself, seen along its normal.
+CagStatus cag_roll_ring_is_simple(const CagVec3 *ring, size_t size, bool *out, CagError *err);
 // The closed mesh through n >= 2 rings of `size` points (closed: the last is joined to the first,
 // and n >= 3; else the first and last are filled), oriented outward.
 CagStatus cag_roll_sweep(const CagVec3 *rings, size_t size, size_t n, bool closed, CagMesh **out,

@@ -255,8 +255,7 @@ CagStatus cag_roll_add_pivot(CagRollPlan *p, size_t part, size_t corner, const C
   if (!pivot_axis(&v) || (v.flat && !miter(p, &v, leaving, at))) return CAG_OK;
   for (int k = 0; !status && possible && k < 2; k++) status = set_range(p, &v, k, &possible, err);
   if (!status && possible && !v.flat) status = contacts_within(&v, &within, err);
-  if (status || !possible) return status;
-  if (!within) p->unfit = tips[0].pick;
+  if (status || !possible || !within) return status;
   if (!CAG_RESERVE(p->pivots, p->pivot_room, p->pivot_count + 1)) return cag_fail_memory(err);
   p->pivots[p->pivot_count++] = v;
   for (int k = 0; k < 2; k++) p->picks[tips[k].pick].pivot[tips[k].end] = p->pivot_count;

@@ -16,7 +16,7 @@
 
 // Adds the turn at a corner of three sharp edges, two of which (tips) are rounded and have a bend
 // opposite to the third. third: the pick of the latter, or CAG_ROLL_NONE. *done: false if the
-// corner is of another kind. Sets `unfit`.
+// corner is of another kind, or the ball leaves the third edge.
 CagStatus cag_roll_add_pivot(CagRollPlan *p, size_t part, size_t corner, const CagRollTip tips[2],
                              CagRollTip third, bool *done, CagError *err);
 // The section when the ball has turned by the fraction t from the end `tip` of an edge to the
