@@ -28,6 +28,8 @@ namespace brep {
 static const double SMOOTH_ANGLE = 1e-4;
 // Seconds for finding the edge and the radius that fail, and steps of the bisection.
 static const double SEARCH_SECONDS = 5;
+// Seconds for all other ways after the first one has failed.
+static const double RETRY_SECONDS = 10;
 static const int SEARCH_STEPS = 12;
 
 // The blend of an edge.
@@ -198,16 +200,21 @@ static std::vector<Blending> blend_forms(bool chamfer) {
   return {{false, ChFi3d_Rational}, {false, ChFi3d_QuasiAngular}, {false, ChFi3d_Polynomial}};
 }
 
+static double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 static bool blend_in_turn(const TopoDS_Solid &solid, const std::vector<Blends> &contours,
-                          bool chamfer, Solids &result, Failure &failure) {
+                          bool chamfer, double deadline, Solids &result, Failure &failure) {
   std::vector<std::vector<BlendPlace>> groups;
   for (const Blends &contour : contours) groups.push_back(blend_places(contour));
   TopoDS_Solid current = solid;
   for (const std::vector<BlendPlace> &group : groups) {
     bool done = false;
     for (const Blending &how : blend_forms(chamfer)) {
-      done = attempt([&] { return blend_once(current, find_blends(current, group), how); },
-                     ATTEMPT_SECONDS, result, failure);
+      done = now() < deadline &&
+             attempt([&] { return blend_once(current, find_blends(current, group), how); },
+                     deadline - now(), result, failure);
       if (done) break;
     }
     if (!done) return false;
@@ -217,10 +224,6 @@ static bool blend_in_turn(const TopoDS_Solid &solid, const std::vector<Blends> &
 }
 
 // ---- what fails ----
-
-static double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 static Blends scaled(const Blends &blends, double factor) {
   Blends result = blends;
@@ -306,21 +309,27 @@ static Failure explain_failure(const TopoDS_Solid &solid, const Blends &blends,
   return explained;
 }
 
+// The kernel's first way has ATTEMPT_SECONDS, the others RETRY_SECONDS together: they rarely succeed
+// where it took long to fail, and cag has another method (geom/solid/rolling.h).
 static Solids blend(const TopoDS_Solid &solid, const Blends &blends, bool chamfer) {
   Solids result;
   Failure first = {}, failure = {};
+  double deadline = now() + ATTEMPT_SECONDS;
   for (const Blending &how : blend_forms(chamfer)) {
-    if (try_blend(solid, blends, how, ATTEMPT_SECONDS, result, failure)) return result;
-    if (first.what.empty()) first = failure;
+    if (now() >= deadline) break;
+    if (try_blend(solid, blends, how, deadline - now(), result, failure)) return result;
+    if (!first.what.empty()) continue;
+    first = failure;
+    deadline = now() + RETRY_SECONDS;
   }
   const std::vector<BlendPlace> places = blend_places(blends);
   const auto unified = [&] {
     const TopoDS_Solid merged = unify({solid})[0];
     return blend_once(merged, find_blends(merged, places), {chamfer, ChFi3d_Rational});
   };
-  if (attempt(unified, ATTEMPT_SECONDS, result, failure)) return result;
+  if (now() < deadline && attempt(unified, deadline - now(), result, failure)) return result;
   const std::vector<Blends> contours = blend_contours(solid, blends);
-  if (contours.size() > 1 && blend_in_turn(solid, contours, chamfer, result, failure))
+  if (contours.size() > 1 && blend_in_turn(solid, contours, chamfer, deadline, result, failure))
     return result;
   throw explain_failure(solid, blends, contours, chamfer, first);
 }

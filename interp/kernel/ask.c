@@ -26,7 +26,8 @@
 
 // Milliseconds between looks at the stop flag.
 #define WATCH_INTERVAL 20
-// Seconds until a program that says nothing is given up: at its start, and during a request.
+// Seconds until a program that says nothing is given up: at its start, and during a request for
+// which there is no other limit.
 #define HELLO_SECONDS 20.0
 #define ANSWER_SECONDS 600.0
 // The largest answer that is accepted, in bytes.
@@ -42,6 +43,7 @@
 struct CagKernel {
   pid_t process; // 0: not started
   int socket;
+  double patience; // seconds; 0: ANSWER_SECONDS
   CagAnswers answers;
 };
 
@@ -68,6 +70,8 @@ void cag_kernel_free(CagKernel *k) {
   cag_answers_free(&k->answers);
   free(k);
 }
+
+void cag_kernel_set_patience(CagKernel *k, double seconds) { k->patience = seconds; }
 
 // --- The program ---
 
@@ -289,14 +293,26 @@ static CagStatus fail_as_told(const Answer *a, CagKernelFailure *why, CagError *
                   (int)(n < TOLD_MOST ? n : TOLD_MOST), text);
 }
 
+// Seconds that the answer to a request may take.
+static double answer_seconds(const CagKernel *k, CagBrepMessage type) {
+  switch (type) {
+  case CAG_BREP_FILLET:
+  case CAG_BREP_CHAMFER:
+  case CAG_BREP_SHELL:
+  case CAG_BREP_OFFSET:
+  case CAG_BREP_DRAFT: return k->patience > 0 ? k->patience : ANSWER_SECONDS;
+  default: return ANSWER_SECONDS;
+  }
+}
+
 static CagStatus exchange(CagKernel *k, CagBrepMessage type, const CagFields *f, Answer *out,
                           CagKernelFailure *why, CagError *err) {
   const uint64_t head[2] = {type, f->length};
-  const double until = cag_clock_seconds() + ANSWER_SECONDS;
+  const double seconds = answer_seconds(k, type), until = cag_clock_seconds() + seconds;
   CagStatus status = start(k, err);
   if (!status) status = send_bytes(k, head, sizeof head, until, err);
   if (!status) status = send_bytes(k, f->bytes, f->length, until, err);
-  if (!status) status = receive(k, ANSWER_SECONDS, out, err);
+  if (!status) status = receive(k, seconds, out, err);
   if (status || out->type == CAG_BREP_RESULT) return status;
   status = out->type == CAG_BREP_FAILURE ? fail_as_told(out, why, err) : fail_answer(err);
   if (status == CAG_E_RENDERER) end_process(k);

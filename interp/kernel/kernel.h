@@ -20,6 +20,10 @@ CagKernel *cag_kernel_new(void);
 // Ends the program. NULL is allowed.
 void cag_kernel_free(CagKernel *k);
 
+// Seconds that a request may take if the mesh can give what it asks for: a fillet, chamfer, shell,
+// offset, or draft. 0: as long as the others.
+void cag_kernel_set_patience(CagKernel *k, double seconds);
+
 // Boundaries of the connected parts of a solid.
 typedef struct CagBoundaries {
   CagBoundary *items;

@@ -23,6 +23,8 @@
 
 // Of a run. Less where all addresses together are not more.
 #define MEMORY_MOST ((size_t)(SIZE_MAX > UINT32_MAX ? (uint64_t)4 << 30 : (uint64_t)1 << 30))
+// The part of the time limit that the kernel may take for what the mesh can give as well.
+#define KERNEL_SHARE 0.3
 
 const char *cag_version(void) { return CAG_VERSION; }
 
@@ -108,6 +110,7 @@ void cag_session_free(CagSession *s) {
 struct CagKernel *cag_session_kernel(CagSession *s) {
   CagAccount *before = cag_account_lend(NULL);
   if (!s->kernel) s->kernel = cag_kernel_new();
+  if (s->kernel) cag_kernel_set_patience(s->kernel, KERNEL_SHARE * s->options.max_time);
   cag_account_lend(before);
   return s->kernel;
 }

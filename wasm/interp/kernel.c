@@ -9,6 +9,10 @@ static char no_kernel;
 
 CagKernel *cag_kernel_new(void) { return (CagKernel *)(void *)&no_kernel; }
 void cag_kernel_free(CagKernel *k) { (void)k; }
+void cag_kernel_set_patience(CagKernel *k, double seconds) {
+  (void)k;
+  (void)seconds;
+}
 
 static CagStatus fail_missing(CagError *err) {
   return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_missing, "", -1,
