@@ -58,10 +58,11 @@ static const CagSolidFace *chosen_faces(CagCall *call, const CagChosen *chosen, 
 
 // --- shell ---
 
-// p: NULL without a boundary, and without open faces.
+// p: NULL without a boundary, and without open faces. Without these, the mesh is that of the solid
+// itself, which has fewer triangles than that of its boundary.
 static CagStatus mesh_shell(CagCall *call, const struct cag_exacts_shell *a, CagExactParts *p,
                             const CagChosen *open, size_t n, CagSolid **out, CagError *err) {
-  const CagSolid *s = p ? p->solid : a->G;
+  const CagSolid *s = n > 0 ? p->solid : a->G;
   const CagSolidFace *faces = chosen_faces(call, open, n);
   double tolerance;
   CagStatus status = cag_exacts_tolerance(call, s, &tolerance, err);
