@@ -16,6 +16,8 @@
 
 // Ends that are nearer than this fraction of the length of an edge are one point.
 #define CLOSED 1e-9
+// Limits of the ball on the mesh are by its tolerance too large.
+#define CLEARLY 1.05
 
 typedef CagStatus (*BlendRequest)(CagKernel *k, const CagBoundary *part, const CagBlend *blends,
                                   size_t n, CagBoundaries *out, CagKernelFailure *why,
@@ -303,6 +305,16 @@ static const CagBlend *blend_along(const Blending *b, const size_t *by_number, c
   return found;
 }
 
+// Whether the ball on the mesh failed at an edge with a clearly larger limit than the kernel, or where
+// the kernel told none. The error then tells that of the ball.
+static bool allows_more(const Blending *b, const CagError *rolled, const CagRollLimit *limit,
+                        const CagKernelFailure *kernel) {
+  if (rolled->id != CAG_ERR_rounding_too_large || limit->index >= b->n) return false;
+  const double *size = rolled_edges(b)[limit->index].size;
+  return kernel->reason == 0 ||
+         limit->factor * fmax(size[0], size[1]) > CLEARLY * kernel->limit * b->parts->scale;
+}
+
 // The same edges with the same sizes, of the boundary that is found from the mesh. *done: there are
 // such edges. Sizes that change along an edge are not transferred.
 static CagStatus transfer(const Blending *b, CagExactParts *p, Blending *out, bool *done,
@@ -369,6 +381,7 @@ static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result
   double sizes[2];
   Blending b;
   BlendFailure failure;
+  CagRollLimit limit;
   CagSolid *made = NULL;
   if (!cag_is_function(size) && !read_sizes(call, words, size, sizes)) return false;
   CagExactParts *p = cag_exact_parts(call, 0, true);
@@ -377,12 +390,12 @@ static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result
   if (cag_exact_parts_meshed(p)) return blend_meshed(&b, &unmeshed, result);
   CagStatus status = ask_kernel(&b, &made, &failure);
   if (status && !cag_is_final(status)) {
-    const CagError kernel = *call->err;
-    CagError err;
+    CagError kernel = *call->err, err;
     cag_exacts_say_refused(call, "tier B: kernel", &kernel);
-    CagStatus rolled = roll_edges(&b, NULL, &made, &err);
+    CagStatus rolled = roll_edges(&b, &limit, &made, &err);
     if (rolled && !cag_is_final(rolled)) {
       cag_exacts_say_refused(call, "tier C: rolling ball on the mesh", &err);
+      if (allows_more(&b, &err, &limit, &failure.why)) kernel = err, failure.count = 0;
       rolled = roll_found_edges(&b, &made, &err);
       if (rolled && !cag_is_final(rolled))
         cag_exacts_say_refused(call, "tier C: rolling ball on edges found in the mesh", &err);
@@ -391,7 +404,9 @@ static bool blend_edges(CagCall *call, const BlendWords *words, CagValue *result
     if (!rolled || cag_is_final(rolled)) status = rolled;
   }
   if (status && !cag_is_final(status))
-    return fail_blend(p, words, failure.part, failure.blends, failure.count, &failure.why);
+    return failure.count > 0
+               ? fail_blend(p, words, failure.part, failure.blends, failure.count, &failure.why)
+               : fail_rolled(&b, &limit);
   return cag_exacts_changed(call, status, &made, result);
 }
 
