@@ -20,10 +20,8 @@
 #define LIFT_BULGE 2
 // A face that the direction of an edge meets with a smaller sine continues the edge smoothly.
 #define GRAZING 1e-3
-// Steps of Newton's method toward a face along a line, and the last one of those that find it, as a
-// fraction of the coordinates.
+// Steps of Newton's method toward a face along a line.
 #define STEPS 60
-#define MET 1e-9
 // Points of the result may be off by the tolerance of the mesh and that of the sections.
 #define NEAR 2
 // The volume may be off by this fraction of itself because of rounding.
@@ -106,12 +104,11 @@ static CagStatus check_middles(CagRollPlan *p, const CagMesh *result, CagError *
 // --- The ends of chains ---
 
 // How far the line from `from` along a unit vector is from the face; the tangent plane at the
-// parameters uv is near the face there. *found: false if it does not meet the face.
+// parameters uv is near the face there.
 static CagStatus distance_along(const CagRollSide *side, const double uv[2], CagVec3 from,
-                                CagVec3 along, double *out, bool *found, CagError *err) {
+                                CagVec3 along, double *out, CagError *err) {
   double at[2] = {uv[0], uv[1]}, s = 0;
   CagStatus status = CAG_OK;
-  *found = false;
   for (int k = 0; !status && k < STEPS; k++) {
     CagVec3 foot, normal;
     status = cag_roll_foot(side, cag_madd(from, s, along), at, &foot, &normal, err);
@@ -120,7 +117,6 @@ static CagStatus distance_along(const CagRollSide *side, const double uv[2], Cag
     if (fabs(slope) < GRAZING) break;
     const double step = cag_dot(cag_sub(foot, cag_madd(from, s, along)), normal) / slope;
     s += step;
-    *found = fabs(step) <= MET * (cag_norm(from) + fabs(s));
     if (fabs(step) <= 1e-14 * (cag_norm(from) + fabs(s))) break;
   }
   *out = s;
@@ -159,8 +155,8 @@ static CagStatus find_stops(const CagRollPlan *p, CagRollTip tip, CagVec3 leavin
 }
 
 // Moves the points of the last ring along the edge: to the faces on which the body ends, or beyond
-// those through which it leaves. *fits: whether the ring is on these faces, beyond the one before
-// it, and does not cross itself.
+// those through which it leaves. *fits: whether the ring stays beyond the one before it, and
+// does not cross itself.
 static CagStatus end_ring(const CagRollPlan *p, CagRollTip tip, double lift, CagVec3 *ring,
                           const CagVec3 *before, size_t size, bool *fits, CagError *err) {
   CagVec3 leaving;
@@ -171,11 +167,8 @@ static CagStatus end_ring(const CagRollPlan *p, CagRollTip tip, double lift, Cag
     double move = stops.flush ? INFINITY : 0;
     for (size_t k = 0; !status && k < stops.count; k++) {
       double s;
-      bool met;
       if (stops.flush && stops.slope[k] > 0) continue;
-      status =
-          distance_along(&stops.faces[k].side, stops.faces[k].uv, ring[i], leaving, &s, &met, err);
-      *fits = *fits && met;
+      status = distance_along(&stops.faces[k].side, stops.faces[k].uv, ring[i], leaving, &s, err);
       if (status) break;
       move = stops.flush ? fmin(move, s) : fmax(move, s + lift / stops.slope[k]);
     }
