@@ -20,6 +20,10 @@
 // of the volume of a layer as thick as the tolerance.
 #define FOLDED 0.02
 #define FOLDS 0.02
+// More folds than these, up to this part of the area, are allowed if the volume between the old and
+// the new faces is that of wedges over the old ones, up to this part of it.
+#define FOLDED_MOST 0.2
+#define WEDGES 0.1
 
 // An inclined face: its old normal, and its new plane.
 typedef struct Incline {
@@ -106,20 +110,47 @@ static CagStatus moved_mesh(const Draft *d, CagMesh **out, CagError *err) {
   return CAG_OK;
 }
 
-// Whether the triangles of the inclined faces keep their sides, up to narrow folds beside curved
-// faces. Where two faces would pass through each other, half of their area is turned over.
+// The parts of the area of the inclined faces that are turned over in the moved mesh, and the volumes
+// of wedges between the old and new planes over the old faces.
+typedef struct Changes {
+  double kept, turned;
+  double removed, moved; // by the wedges, counting those outward as negative, and as positive
+} Changes;
+
+static void add_changes(const Draft *d, size_t face, const CagVec3 old[3], const CagVec3 now[3],
+                        Changes *c) {
+  const CagVec3 middle = cag_scaled(cag_add(old[0], cag_add(old[1], old[2])), 1 / 3.0);
+  const double height = cag_dot(cag_sub(middle, d->at), d->pull);
+  const CagVec3 was = cag_cross(cag_sub(old[1], old[0]), cag_sub(old[2], old[0]));
+  const double area =
+      cag_dot(cag_cross(cag_sub(now[1], now[0]), cag_sub(now[2], now[0])), d->planes[face].normal);
+  const double wedge = cag_norm(was) / 2 * height * tan(d->angle);
+  *(area < 0 ? &c->turned : &c->kept) += fabs(area);
+  c->removed += wedge;
+  c->moved += fabs(wedge);
+}
+
+// Whether the triangles of the inclined faces keep their sides, up to folds beside curved faces. Where
+// two faces would pass through each other, half of their area is turned over.
 static bool keeps_sides(const Draft *d, const CagMesh *moved) {
-  double kept = 0, turned = 0;
+  const CagMesh *m = d->m->mesh;
+  double before[10] = {0}, after[10] = {0};
+  Changes c = {0};
   for (size_t t = 0; t < moved->triangle_count; t++) {
     const size_t i = incline_of(d, t);
-    CagVec3 p[3];
+    CagVec3 old[3], now[3];
     if (i == d->n) continue;
-    for (size_t k = 0; k < 3; k++) p[k] = moved->positions[moved->triangles[3 * t + k]];
-    const double area =
-        cag_dot(cag_cross(cag_sub(p[1], p[0]), cag_sub(p[2], p[0])), d->planes[i].normal);
-    *(area < 0 ? &turned : &kept) += fabs(area);
+    for (size_t k = 0; k < 3; k++) {
+      old[k] = m->positions[cag_mesh_corner(m, 3 * t + k)];
+      now[k] = moved->positions[moved->triangles[3 * t + k]];
+    }
+    add_changes(d, i, old, now, &c);
   }
-  return turned <= FOLDED * kept;
+  if (c.turned <= FOLDED * c.kept) return true;
+  cag_mesh_volume_terms(m, before);
+  cag_mesh_volume_terms(moved, after);
+  return c.turned <= FOLDED_MOST * c.kept &&
+         fabs(before[0] - after[0] - c.removed) <= WEDGES * c.moved;
 }
 
 // The union of the mesh with itself, which has the same volume unless it overlaps.
