@@ -64,6 +64,8 @@ typedef struct CagIgesCurve {
   CagIgesPointer at;
   double scale, shift;
 } CagIgesCurve;
+// A line (entity 110), whose parameter runs from 0 to 1.
+CagIgesPointer cag_iges_line(CagIges *w, CagVec3 from, CagVec3 to);
 // A line of degree 1, an arc, or a curve of a NURBS kind.
 CagStatus cag_iges_curve(CagIges *w, const CagCurve *c, CagIgesCurve *out, CagError *err);
 
