@@ -278,7 +278,23 @@ static bool ellipse_of(const CurvePoints *c, Conic *out) {
   return true;
 }
 
-// The part of a conic through the points, in their direction.
+// Finds the angle at which a conic around the axis of a carrier crosses the half-plane u = 0, where
+// the kernel's face has its seam.
+static bool conic_seam(const Conic *k, const CagCarrier *c, double size, double *out) {
+  if (!cag_carrier_is_analytic(c) || !cag_carrier_is_periodic(c, 0)) return false;
+  const CagVec3 x = cag_frame_column(&k->frame, 0), y = cag_frame_column(&k->frame, 1);
+  const CagVec3 right = cag_frame_column(&c->frame, 0), up = cag_frame_column(&c->frame, 1);
+  const CagVec3 off = cag_sub(cag_frame_column(&k->frame, 3), cag_frame_column(&c->frame, 3));
+  if (hypot(cag_dot(off, right), cag_dot(off, up)) > EXACT * size) return false;
+  const double t = atan2(-k->a * cag_dot(x, up), k->b * cag_dot(y, up));
+  const double ahead = k->a * cos(t) * cag_dot(x, right) + k->b * sin(t) * cag_dot(y, right);
+  if (!(fabs(ahead) > EXACT * size)) return false;
+  *out = ahead < 0 ? t + M_PI : t;
+  return true;
+}
+
+// The part of a conic through the points, in their direction. A closed one starts at the seam of a
+// carrier if it goes around its axis, so that its start does not depend on the mesh.
 static CagStatus conic_curve(const CurvePoints *c, Conic k, CagCurve **out, CagError *err) {
   double turned = 0, last = 0, first = 0;
   for (int pass = 0; pass < 2; pass++) {
@@ -295,7 +311,11 @@ static CagStatus conic_curve(const CurvePoints *c, Conic k, CagCurve **out, CagE
     for (int i = 0; i < 3; i++) // turned about x
       for (int j = 1; j < 3; j++) k.frame.m[i][j] = -k.frame.m[i][j];
   }
-  if (c->closed) turned = 2 * M_PI;
+  if (c->closed) {
+    turned = 2 * M_PI;
+    if (!conic_seam(&k, c->carriers[0], c->size, &first))
+      conic_seam(&k, c->carriers[1], c->size, &first);
+  }
   return cag_curve_arc(k.a, k.b, first, first + turned, &k.frame, out, err);
 }
 

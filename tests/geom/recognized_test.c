@@ -78,6 +78,81 @@ static void a_ball_has_no_edges(void **state) {
   cag_solid_release(ball);
 }
 
+// Faces are sorted by the mean of the middles of their edges. The middles of the circles are at x = 6,
+// so that the faces with them come before those at x = 10; those of the cylinder count as its axis.
+static void parts_are_sorted_by_location(void **state) {
+  (void)state;
+  static const CagVec3 faces[] = {{0, 10, 5},  {10, 10, 0}, {10, 10, 10}, {10, 0, 5},
+                                  {10, 10, 5}, {10, 20, 5}, {20, 10, 5}};
+  // The middle of the curve, which is opposite the start of a closed one.
+  static const CagVec3 edges[] = {{0, 0, 5},   {0, 10, 0},  {0, 10, 10},  {0, 20, 5},  {6, 10, 0},
+                                  {6, 10, 10}, {10, 0, 0},  {10, 0, 10},  {10, 20, 0}, {10, 20, 10},
+                                  {20, 0, 5},  {20, 10, 0}, {20, 10, 10}, {20, 20, 5}};
+  CagSolid *s = recognized(holed_block(), TOLERANCE);
+  size_t n;
+  const CagBoundary *b = cag_solid_boundaries(s, &n);
+  CagFeatures f = features_of(s);
+  assert_int_equal(f.face_count, 7);
+  assert_int_equal(f.edge_count, 14);
+  assert_int_equal(f.corner_count, 8);
+  for (size_t i = 0; i < 7; i++)
+    NEAR(cag_norm(cag_sub(f.faces[i].center, faces[i])), 0, 10 * TOLERANCE);
+  for (size_t i = 0; i < 14; i++) {
+    const CagCurve *c = b->edges[f.edges[i].edge].curve;
+    CagVec3 p;
+    OK(cag_curve_point(c, (c->start + c->end) / 2, &p, &err));
+    NEAR(cag_norm(cag_sub(p, edges[i])), 0, 1e-9);
+    for (size_t k = 1; k < f.edges[i].count; k++)
+      assert_true(f.edge_faces[f.edges[i].first + k - 1] < f.edge_faces[f.edges[i].first + k]);
+  }
+  for (size_t i = 0; i < 8; i++) {
+    const CagVec3 p = cag_vec3(i & 4 ? 20 : 0, i & 2 ? 20 : 0, i & 1 ? 10 : 0);
+    NEAR(cag_norm(cag_sub(f.corners[i].point, p)), 0, 1e-9);
+  }
+  cag_features_free(&f);
+  cag_solid_release(s);
+}
+
+// A plate with a row of holes: another radius does not change the numbers of its parts, although
+// the mesh has other vertices.
+static void a_parameter_does_not_change_the_order(void **state) {
+  (void)state;
+  enum { HOLES = 3 };
+  const double radii[] = {2, 2.1, 3.7};
+  CagFeatures first = {0};
+  for (size_t k = 0; k < sizeof radii / sizeof *radii; k++) {
+    CagSolid *parts[HOLES + 1], *s;
+    OK(cag_solid_box(cag_vec3(40, 12, 3), false, &parts[0], &err));
+    for (size_t i = 1; i <= HOLES; i++) {
+      CagSolid *hole;
+      const CagTransform move = cag_translate(cag_vec3(10 * (double)i, 6, -1));
+      OK(cag_solid_cylinder(5, radii[k], radii[k], &hole, &err));
+      OK(cag_solid_transform(hole, &move, &parts[i], &err));
+      cag_solid_release(hole);
+    }
+    OK(cag_solid_combine(CAG_DIFFERENCE, parts, HOLES + 1, NULL, &s, &err));
+    for (size_t i = 0; i <= HOLES; i++) cag_solid_release(parts[i]);
+    s = recognized(s, TOLERANCE);
+    CagFeatures f = features_of(s);
+    cag_solid_release(s);
+    assert_int_equal(f.face_count, 6 + HOLES);
+    assert_int_equal(f.edge_count, 12 + 2 * HOLES);
+    for (size_t i = 0; k > 0 && i < f.face_count; i++) {
+      assert_string_equal(f.faces[i].kind, first.faces[i].kind);
+      NEAR(cag_norm(cag_sub(f.faces[i].center, first.faces[i].center)), 0, 0.01);
+    }
+    for (size_t i = 0; k > 0 && i < f.edge_count; i++) {
+      // Starts move with the radius only.
+      const double most = strcmp(f.edges[i].kind, "circle") == 0 ? radii[k] - radii[0] : 0;
+      assert_string_equal(f.edges[i].kind, first.edges[i].kind);
+      NEAR(cag_norm(cag_sub(f.edges[i].start, first.edges[i].start)), most, 1e-9);
+    }
+    if (k == 0) first = f;
+    else cag_features_free(&f);
+  }
+  cag_features_free(&first);
+}
+
 // The area between two perpendicular lines and a circle that touches both is (1 - pi/4) r^2.
 static void edges_are_rounded(void **state) {
   (void)state;
@@ -140,9 +215,14 @@ static void sides_are_inclined(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(operands_keep_their_faces), cmocka_unit_test(cylinders_are_recognized),
-      cmocka_unit_test(a_ball_has_no_edges),       cmocka_unit_test(edges_are_rounded),
-      cmocka_unit_test(tops_are_left_open),        cmocka_unit_test(sides_are_inclined),
+      cmocka_unit_test(operands_keep_their_faces),
+      cmocka_unit_test(cylinders_are_recognized),
+      cmocka_unit_test(a_ball_has_no_edges),
+      cmocka_unit_test(parts_are_sorted_by_location),
+      cmocka_unit_test(a_parameter_does_not_change_the_order),
+      cmocka_unit_test(edges_are_rounded),
+      cmocka_unit_test(tops_are_left_open),
+      cmocka_unit_test(sides_are_inclined),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
