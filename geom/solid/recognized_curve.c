@@ -29,8 +29,10 @@
 #define TURN (5 * M_PI / 180)
 // The chords between points in their right order turn by less, in radians.
 #define BACK 1.2
-// Points of a trace.
-#define TRACE 65
+// Points of a trace. The cubic through so many points of a circle is within 2e-8 of its radius.
+#define TRACE 129
+// A trace is a line if its points are on one to this fraction of its length.
+#define TRACE_LINE 1e-12
 
 // --- Points on several carriers ---
 
@@ -363,6 +365,17 @@ CagStatus cag_recognized_curve(const CagCarrier *const carriers[2], const CagVec
   return status;
 }
 
+// Whether points are evenly spaced on a line over their parameters.
+static bool is_even(const CagVec3 *uv, const double *t, size_t n) {
+  const CagVec3 along = cag_sub(uv[n - 1], uv[0]);
+  const double slack = TRACE_LINE * (cag_norm(along) + cag_norm(uv[0]));
+  for (size_t i = 1; i + 1 < n; i++) {
+    const CagVec3 even = cag_madd(uv[0], (t[i] - t[0]) / (t[n - 1] - t[0]), along);
+    if (cag_norm(cag_sub(uv[i], even)) > slack) return false;
+  }
+  return true;
+}
+
 CagStatus cag_recognized_trace(const CagCarrier *c, const CagCurve *curve, CagCurve **out,
                                CagError *err) {
   CagVec3 uv[TRACE];
@@ -382,5 +395,12 @@ CagStatus cag_recognized_trace(const CagCarrier *c, const CagCurve *curve, CagCu
     near[0] = at[0], near[1] = at[1];
     uv[i] = cag_vec3(at[0], at[1], 0);
   }
-  return status ? status : cag_curve_polyline_over(uv, t, n, 2, out, err);
+  if (status) return status;
+  if (is_even(uv, t, n)) {
+    const CagVec3 ends[2] = {uv[0], uv[n - 1]};
+    return cag_curve_polyline_over(ends, (double[2]){t[0], t[n - 1]}, 2, 2, out, err);
+  }
+  if (n < TRACE) return cag_curve_polyline_over(uv, t, n, 2, out, err);
+  const CagFitData data = {.points = uv, .n = n, .parameters = t, .degree = 3, .dimension = 2};
+  return cag_curve_interpolate_ends(&data, CAG_FIT_NOT_A_KNOT, NULL, out, err);
 }

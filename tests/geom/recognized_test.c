@@ -213,6 +213,104 @@ static void sides_are_inclined(void **state) {
   cag_solid_release(s);
 }
 
+// --- Surfaces of faces ---
+
+// The set operation of a solid and a box that starts at a corner. Takes the
+// solid.
+static CagSolid *cut_by_box(CagSolid *s, CagSetOperation op, CagVec3 corner, CagVec3 size) {
+  CagSolid *parts[2] = {s, NULL}, *box, *out;
+  const CagTransform move = cag_translate(corner);
+  OK(cag_solid_box(size, false, &box, &err));
+  OK(cag_solid_transform(box, &move, &parts[1], &err));
+  OK(cag_solid_combine(op, parts, 2, NULL, &out, &err));
+  cag_solid_release(box);
+  cag_solid_release(parts[0]);
+  cag_solid_release(parts[1]);
+  return out;
+}
+
+// The area of the faces of a kind, as surfaces. Takes the solid.
+static double surface_of(CagSolid *s, const char *kind) {
+  s = recognized(s, TOLERANCE);
+  CagFeatures f = features_of(s);
+  double sum = 0, area;
+  for (size_t i = 0; i < f.face_count; i++) {
+    if (strcmp(f.faces[i].kind, kind) != 0) continue;
+    OK(cag_surface_area(s->faces[i], &area, NULL, &err));
+    sum += area;
+  }
+  cag_features_free(&f);
+  cag_solid_release(s);
+  return sum;
+}
+
+static CagSolid *ball(double radius) {
+  CagSolid *s;
+  OK(cag_solid_sphere(radius, &s, &err));
+  return s;
+}
+
+static CagSolid *rod(double height, double radius) {
+  CagSolid *s;
+  OK(cag_solid_cylinder(height, radius, radius, &s, &err));
+  return s;
+}
+
+// The faces of kernels have seams, those that are recognized have none: they are closed between
+// their edges, or up to a pole. The area of a zone of a ball is 2 pi r h.
+static void curved_faces_end_at_their_edges(void **state) {
+  (void)state;
+  const CagVec3 far = {-20, -20, -20}, large = {40, 40, 40};
+  NEAR(surface_of(holed_block(), "cylinder"), 80 * M_PI, 1e-6);
+  // Around a pole, between two circles, around both poles, and around none.
+  const CagVec3 above = {-20, -20, 1};
+  NEAR(surface_of(cut_by_box(ball(5), CAG_INTERSECTION, above, large), "sphere"), 40 * M_PI, 1e-4);
+  NEAR(surface_of(cut_by_box(ball(5), CAG_INTERSECTION, above, cag_vec3(40, 40, 2)), "sphere"),
+       20 * M_PI, 1e-4);
+  NEAR(surface_of(cut_by_box(ball(5), CAG_INTERSECTION, far, cag_vec3(23, 40, 40)), "sphere"),
+       80 * M_PI, 1e-4);
+  NEAR(surface_of(cut_by_box(ball(5), CAG_INTERSECTION, cag_vec3(3, -20, -20), large), "sphere"),
+       20 * M_PI, 1e-4);
+  // Half of a rod, without a seam, and a rod that is cut at its top.
+  NEAR(surface_of(cut_by_box(rod(10, 4), CAG_INTERSECTION, cag_vec3(0, -20, -20), large),
+                  "cylinder"),
+       40 * M_PI, 1e-4);
+  NEAR(surface_of(cut_by_box(rod(10, 4), CAG_DIFFERENCE, cag_vec3(0, -20, 5), large), "cylinder"),
+       60 * M_PI, 1e-4);
+}
+
+// A rod with a slanted end: its lateral area is the perimeter times the height at the axis.
+static void seams_cross_slanted_ends(void **state) {
+  (void)state;
+  CagSolid *parts[2], *box, *out;
+  CagTransform turn;
+  OK(cag_rotate(cag_vec3(1, 2, 0), 0.3, cag_vec3(0, 0, 10), &turn, &err));
+  const CagTransform up = cag_translate(cag_vec3(-20, -20, 10));
+  const CagTransform both = cag_transform_multiply(&turn, &up);
+  parts[0] = rod(20, 4);
+  OK(cag_solid_box(cag_vec3(40, 40, 40), false, &box, &err));
+  OK(cag_solid_transform(box, &both, &parts[1], &err));
+  OK(cag_solid_combine(CAG_DIFFERENCE, parts, 2, NULL, &out, &err));
+  cag_solid_release(box);
+  cag_solid_release(parts[0]);
+  cag_solid_release(parts[1]);
+  NEAR(surface_of(out, "cylinder"), 80 * M_PI, 1e-4);
+}
+
+// Half of a ring: by Pappus, half of 2 pi R 2 pi r.
+static void a_bend_has_its_half(void **state) {
+  (void)state;
+  CagSolid *ring;
+  OK(cag_solid_torus(10, 3, &ring, &err));
+  NEAR(surface_of(cut_by_box(ring, CAG_INTERSECTION, cag_vec3(-20, 0, -20), cag_vec3(40, 40, 40)),
+                  "torus"),
+       60 * M_PI * M_PI, 1e-3);
+  OK(cag_solid_torus(10, 3, &ring, &err));
+  NEAR(surface_of(cut_by_box(ring, CAG_INTERSECTION, cag_vec3(-20, -20, 0), cag_vec3(40, 40, 40)),
+                  "torus"),
+       60 * M_PI * M_PI, 1e-3);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(operands_keep_their_faces),
@@ -220,6 +318,9 @@ int main(void) {
       cmocka_unit_test(a_ball_has_no_edges),
       cmocka_unit_test(parts_are_sorted_by_location),
       cmocka_unit_test(a_parameter_does_not_change_the_order),
+      cmocka_unit_test(curved_faces_end_at_their_edges),
+      cmocka_unit_test(seams_cross_slanted_ends),
+      cmocka_unit_test(a_bend_has_its_half),
       cmocka_unit_test(edges_are_rounded),
       cmocka_unit_test(tops_are_left_open),
       cmocka_unit_test(sides_are_inclined),
