@@ -226,6 +226,9 @@ CagIgesPointer cag_iges_nurbs_surface(CagIges *w, const CagSurface *s, int statu
 
 // --- Lines and conics ---
 
+// Angles that differ by less are the same.
+#define ANGLE_ROUNDING 1e-9
+
 CagIgesPointer cag_iges_line(CagIges *w, CagVec3 from, CagVec3 to) {
   const CagIgesPointer at = cag_iges_begin(w, 110, 0, CAG_IGES_PART);
   cag_iges_point(w, from);
@@ -312,11 +315,30 @@ static void elliptic_curve(CagIges *w, const CagCurve *c, double a, double b,
   out->shift = -quarter - turns;
 }
 
+bool cag_iges_is_offset_ellipse(const CagCurve *c) {
+  double a, b;
+  CagTransform frame;
+  if (!c->closed || !cag_curve_arc_view(c, &a, &b, &frame) || a == b) return false;
+  return fabs(remainder(c->start - (a < b ? M_PI / 2 : 0), 2 * M_PI)) > ANGLE_ROUNDING;
+}
+
+// Writes the exact NURBS form of a curve.
+static CagStatus exact_curve(CagIges *w, const CagCurve *c, CagIgesCurve *out, CagError *err) {
+  CagCurve *exact;
+  CagStatus status = cag_curve_to_nurbs(c, &exact, err);
+  if (status) return status;
+  out->bent = true;
+  status = cag_iges_nurbs_curve(w, exact, false, CAG_IGES_PART, &out->at, err);
+  cag_curve_release(exact);
+  return status;
+}
+
 CagStatus cag_iges_curve(CagIges *w, const CagCurve *c, CagIgesCurve *out, CagError *err) {
   double a, b;
   CagTransform frame;
   CagNurbsView v;
-  *out = (CagIgesCurve){0, 1, 0};
+  *out = (CagIgesCurve){.scale = 1};
+  if (cag_iges_is_offset_ellipse(c)) return exact_curve(w, c, out, err);
   if (cag_curve_arc_view(c, &a, &b, &frame)) {
     if (a == b) circular_curve(w, c, a, &frame, out);
     else elliptic_curve(w, c, a, b, &frame, out);

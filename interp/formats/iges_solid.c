@@ -52,8 +52,8 @@ static CagStatus vertex_list(CagIges *w, SolidLists *s, CagError *err) {
 
 static CagStatus edge_curve(CagIges *w, const CagBrepEdge *e, CagIgesCurve *out, CagError *err) {
   if (e->curve) return cag_iges_curve(w, e->curve, out, err);
-  *out =
-      (CagIgesCurve){cag_iges_line(w, w->brep->vertices[e->from], w->brep->vertices[e->to]), 1, 0};
+  *out = (CagIgesCurve){
+      .at = cag_iges_line(w, w->brep->vertices[e->from], w->brep->vertices[e->to]), .scale = 1};
   return CAG_OK;
 }
 
@@ -126,7 +126,7 @@ static CagStatus solid_loop(CagIges *w, const SolidLists *s, const CagBrepLoop *
   CagStatus status = traces ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < loop->count; i++) {
     const CagBrepUse *use = &w->brep->uses[loop->first + i];
-    if (use->trace && !plane)
+    if (use->trace && !plane && !surface->bent)
       status = use_trace(w, use, &surface->parameters, use->reversed != against, &traces[i], err);
   }
   if (!status) {
