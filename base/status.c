@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/decimal.h"
 #include "base/stop.h"
 #include "base/utf8.h"
 
@@ -102,6 +103,11 @@ const char *cag_number_text(double x, char *buffer) {
   }
   if (isinf(x)) {
     snprintf(buffer, SIZE, x > 0 ? "inf" : "-inf");
+    return buffer;
+  }
+  char *end = cag_decimal_shortest(buffer, x);
+  if (end) {
+    *end = 0;
     return buffer;
   }
   for (int digits = 15; digits <= 17; digits++) {

@@ -31,11 +31,16 @@ CagStatus cag_meshed_face(const CagBoundary *b, size_t face, CagFaceFeature *out
     if (m->labels[t] != face + 1) continue;
     const double area = cag_norm(cag_meshed_cross(m, t)) / 2;
     f.area += area;
-    f.center = cag_madd(f.center, area, cag_meshed_middle(m, t));
-    for (int k = 0; k < 3; k++)
-      cag_bounds_add(&f.bounds, m->positions[m->triangles[3 * t + (size_t)k]]);
+    for (int k = 0; k < 3; k++) {
+      const CagVec3 p = m->positions[m->triangles[3 * t + (size_t)k]];
+      cag_bounds_add(&f.bounds, p);
+      f.center = cag_madd(f.center, area, p);
+    }
   }
-  if (f.area > 0) f.center = cag_scaled(f.center, 1 / f.area);
+  // The sums are exact where areas and coordinates are whole numbers.
+  const double weights = 3 * f.area;
+  if (f.area > 0)
+    f.center = cag_vec3(f.center.x / weights, f.center.y / weights, f.center.z / weights);
   for (size_t t = 0; t < m->triangle_count; t++) {
     if (m->labels[t] != face + 1) continue;
     const double distance = cag_norm(cag_sub(cag_meshed_middle(m, t), f.center));

@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "geom/boundary/unseamed.h"
 #include "geom/curve/region.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
@@ -147,8 +148,7 @@ static CagStatus spline_patch(const CagBoundaryFace *f, CagPatch *out, CagError 
   return cag_surface_flip(s, &out->whole, err);
 }
 
-CagStatus cag_patch_of_face(const CagBoundary *b, size_t face, CagPatch *out, CagError *err) {
-  const CagBoundaryFace *f = &b->faces[face];
+static CagStatus patch_of(const CagBoundaryFace *f, size_t face, CagPatch *out, CagError *err) {
   *out = (CagPatch){NULL, cag_transform_identity(), cag_transform_identity()};
   switch (f->carrier.kind) {
   case CAG_CARRIER_PLANE: plane_patch(f, out); return CAG_OK;
@@ -163,6 +163,10 @@ CagStatus cag_patch_of_face(const CagBoundary *b, size_t face, CagPatch *out, Ca
   }
   return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1, "face %zu has no surface",
                   face);
+}
+
+CagStatus cag_patch_of_face(const CagBoundary *b, size_t face, CagPatch *out, CagError *err) {
+  return patch_of(&b->faces[face], face, out, err);
 }
 
 // A parameter that is at most slightly outside of a domain, moved to its end.
@@ -283,8 +287,26 @@ static CagStatus region_of(const CagBoundary *b, const CagBoundaryFace *f, const
   return status;
 }
 
-// The face of a boundary with a mesh. Its loops may be incomplete, or have no seams: a curved face is
-// the whole surface over its domain.
+// The curved face of a boundary with a mesh, whose loops have no seams; NULL: they are incomplete.
+static CagStatus unseamed_surface(const CagBoundary *b, size_t face, CagSurface **out,
+                                  CagError *err) {
+  CagBoundaryFace f = b->faces[face];
+  CagRegion *region, *moved = NULL;
+  CagPatch p = {0};
+  *out = NULL;
+  CagStatus status = cag_unseamed_region(b, face, &region, f.domain, err);
+  if (status || !region) return status;
+  status = patch_of(&f, face, &p, err);
+  if (!status) status = cag_region_transform(region, &p.parameters, &moved, err);
+  if (!status) status = cag_surface_trimmed(p.whole, moved, out, err);
+  cag_region_release(region);
+  cag_region_release(moved);
+  cag_patch_release(&p);
+  return cag_is_final(status) ? status : CAG_OK;
+}
+
+// The face of a boundary with a mesh. A curved face whose loops are incomplete is the whole surface
+// over its domain.
 static CagStatus meshed_surface(const CagBoundary *b, const CagBoundaryFace *f, const CagPatch *p,
                                 CagSurface **out, CagError *err) {
   CagRegion *region = NULL;
@@ -313,7 +335,10 @@ CagStatus cag_boundary_surface(const CagBoundary *b, size_t face, CagSurface **o
   CagStatus status = cag_patch_of_face(b, face, &p, err);
   if (status) return status;
   if (b->mesh) {
-    status = meshed_surface(b, &b->faces[face], &p, out, err);
+    CagSurface *trimmed = NULL;
+    if (p.whole) status = unseamed_surface(b, face, &trimmed, err);
+    if (trimmed) *out = trimmed;
+    else if (!status) status = meshed_surface(b, &b->faces[face], &p, out, err);
     cag_patch_release(&p);
     return status;
   }

@@ -15,6 +15,7 @@
 #include "geom/solid/exact.h"
 #include "geom/solid/recognized_curve.h"
 #include "geom/solid/recognized_net.h"
+#include "geom/solid/recognized_order.h"
 
 // Points move by at most this multiple of the tolerance to their carriers.
 #define MOVE 25
@@ -275,6 +276,16 @@ static CagStatus spline_normal(const CagCarrier *c, CagVec3 p, CagVec3 *out, Cag
 
 // --- The whole ---
 
+static CagStatus sort_parts(Recognition *f, CagError *err) {
+  size_t *rank = cag_calloc(f->b.face_count + 1, sizeof *rank);
+  if (!rank) return cag_fail_memory(err);
+  const CagStatus status = cag_recognized_order(&f->b, f->tolerance, rank, err);
+  for (size_t r = 0; !status && r < f->net.region_count; r++)
+    if (f->face_of[r]) f->face_of[r] = rank[f->face_of[r] - 1] + 1;
+  cag_free(rank);
+  return status;
+}
+
 // The labels of the mesh become the faces, plus 1.
 static void label_faces(Recognition *f) {
   for (size_t t = 0; t < f->mesh->triangle_count; t++)
@@ -310,6 +321,7 @@ static CagStatus find_boundary(Recognition *f, CagError *err) {
   if (!status) status = find_edges(f, err);
   if (!status) status = orient_faces(f, turn, err);
   if (!status) status = find_faces(f, turn, err);
+  if (!status) status = sort_parts(f, err);
   if (!status) status = finish(f, err);
   cag_free(turn);
   return status;

@@ -29,8 +29,10 @@
 #define TURN (5 * M_PI / 180)
 // The chords between points in their right order turn by less, in radians.
 #define BACK 1.2
-// Points of a trace.
-#define TRACE 65
+// Points of a trace. The cubic through so many points of a circle is within 2e-8 of its radius.
+#define TRACE 129
+// A trace is a line if its points are on one to this fraction of its length.
+#define TRACE_LINE 1e-12
 
 // --- Points on several carriers ---
 
@@ -278,7 +280,23 @@ static bool ellipse_of(const CurvePoints *c, Conic *out) {
   return true;
 }
 
-// The part of a conic through the points, in their direction.
+// Finds the angle at which a conic around the axis of a carrier crosses the half-plane u = 0, where
+// the kernel's face has its seam.
+static bool conic_seam(const Conic *k, const CagCarrier *c, double size, double *out) {
+  if (!cag_carrier_is_analytic(c) || !cag_carrier_is_periodic(c, 0)) return false;
+  const CagVec3 x = cag_frame_column(&k->frame, 0), y = cag_frame_column(&k->frame, 1);
+  const CagVec3 right = cag_frame_column(&c->frame, 0), up = cag_frame_column(&c->frame, 1);
+  const CagVec3 off = cag_sub(cag_frame_column(&k->frame, 3), cag_frame_column(&c->frame, 3));
+  if (hypot(cag_dot(off, right), cag_dot(off, up)) > EXACT * size) return false;
+  const double t = atan2(-k->a * cag_dot(x, up), k->b * cag_dot(y, up));
+  const double ahead = k->a * cos(t) * cag_dot(x, right) + k->b * sin(t) * cag_dot(y, right);
+  if (!(fabs(ahead) > EXACT * size)) return false;
+  *out = ahead < 0 ? t + M_PI : t;
+  return true;
+}
+
+// The part of a conic through the points, in their direction. A closed one starts at the seam of a
+// carrier if it goes around its axis, so that its start does not depend on the mesh.
 static CagStatus conic_curve(const CurvePoints *c, Conic k, CagCurve **out, CagError *err) {
   double turned = 0, last = 0, first = 0;
   for (int pass = 0; pass < 2; pass++) {
@@ -295,7 +313,11 @@ static CagStatus conic_curve(const CurvePoints *c, Conic k, CagCurve **out, CagE
     for (int i = 0; i < 3; i++) // turned about x
       for (int j = 1; j < 3; j++) k.frame.m[i][j] = -k.frame.m[i][j];
   }
-  if (c->closed) turned = 2 * M_PI;
+  if (c->closed) {
+    turned = 2 * M_PI;
+    if (!conic_seam(&k, c->carriers[0], c->size, &first))
+      conic_seam(&k, c->carriers[1], c->size, &first);
+  }
   return cag_curve_arc(k.a, k.b, first, first + turned, &k.frame, out, err);
 }
 
@@ -343,6 +365,17 @@ CagStatus cag_recognized_curve(const CagCarrier *const carriers[2], const CagVec
   return status;
 }
 
+// Whether points are evenly spaced on a line over their parameters.
+static bool is_even(const CagVec3 *uv, const double *t, size_t n) {
+  const CagVec3 along = cag_sub(uv[n - 1], uv[0]);
+  const double slack = TRACE_LINE * (cag_norm(along) + cag_norm(uv[0]));
+  for (size_t i = 1; i + 1 < n; i++) {
+    const CagVec3 even = cag_madd(uv[0], (t[i] - t[0]) / (t[n - 1] - t[0]), along);
+    if (cag_norm(cag_sub(uv[i], even)) > slack) return false;
+  }
+  return true;
+}
+
 CagStatus cag_recognized_trace(const CagCarrier *c, const CagCurve *curve, CagCurve **out,
                                CagError *err) {
   CagVec3 uv[TRACE];
@@ -362,5 +395,12 @@ CagStatus cag_recognized_trace(const CagCarrier *c, const CagCurve *curve, CagCu
     near[0] = at[0], near[1] = at[1];
     uv[i] = cag_vec3(at[0], at[1], 0);
   }
-  return status ? status : cag_curve_polyline_over(uv, t, n, 2, out, err);
+  if (status) return status;
+  if (is_even(uv, t, n)) {
+    const CagVec3 ends[2] = {uv[0], uv[n - 1]};
+    return cag_curve_polyline_over(ends, (double[2]){t[0], t[n - 1]}, 2, 2, out, err);
+  }
+  if (n < TRACE) return cag_curve_polyline_over(uv, t, n, 2, out, err);
+  const CagFitData data = {.points = uv, .n = n, .parameters = t, .degree = 3, .dimension = 2};
+  return cag_curve_interpolate_ends(&data, CAG_FIT_NOT_A_KNOT, NULL, out, err);
 }

@@ -19,8 +19,8 @@ CagStatus cag_recognized_curve(const CagCarrier *const carriers[2], const CagVec
                                bool closed, double size, double most, CagCurve **out,
                                CagError *err);
 
-// The curve in the parameters of a carrier, as a line from point to point, with the parameter of
-// the curve.
+// The curve in the parameters of a carrier, with the parameter of the curve: a line where it is one,
+// else a cubic spline through points of it.
 CagStatus cag_recognized_trace(const CagCarrier *c, const CagCurve *curve, CagCurve **out,
                                CagError *err);
 

@@ -32,7 +32,7 @@ static CagStatus solid_body(CagCall *call, const CagShape *shape, CagViewBody *o
   out->solid = s;
   if (s->face_count > 0 || s->kind == CAG_SOLID_MESH) return CAG_OK;
   out->solid = NULL;
-  CagStatus status = cag_exacts_of_solid(call, s, false, &out->solid);
+  CagStatus status = cag_exacts_of_solid(call, s, true, &out->solid);
   if (status && call->err->id == CAG_ERR_no_boundary) {
     out->solid = NULL;
     status = meshed_body(call, shape, out);

@@ -21,11 +21,15 @@
 #include "interp/scene/scene.h"
 
 typedef struct CagBrepEdge {
-  CagCurve *curve; // of a NURBS kind, or an arc; NULL: degenerate
+  CagCurve *curve; // of a NURBS kind, or an arc; NULL: degenerate, or straight between its vertices
   size_t from, to; // vertices; equal if the curve is closed
   bool straight;   // a line with constant speed
   bool timed;      // its parameter matters, because traces have the same one
 } CagBrepEdge;
+
+static inline bool cag_brep_is_degenerate(const CagBrepEdge *e) {
+  return !e->curve && !e->straight;
+}
 
 typedef struct CagBrepUse {
   size_t edge;
@@ -40,13 +44,12 @@ typedef struct CagBrepLoop {
 } CagBrepLoop;
 
 typedef struct CagBrepFace {
-  CagCarrier carrier;  // NONE: the fields below are valid
+  CagCarrier carrier;  // NONE: `surface` is valid, and FLAT: frame is x, y, normal, and origin
   double domain[4];    // of the carrier: u0 u1 v0 v1 of the face
   bool reversed;       // the outward normal is opposite to that of the carrier
   CagSurface *surface; // of a NURBS kind; for a flat face, a rectangle around it
   bool flat;
   bool whole;          // its loops are the four sides of the surface
-  CagTransform plane;  // FLAT: x, y, normal and origin, orthonormal
   size_t first, count; // loops
   size_t source;       // index, within its shape, of the surface that it is a part of
 } CagBrepFace;

@@ -160,7 +160,7 @@ static CagStatus add_trimmed(CagBrepWork *w, const CagSurface *s, const CagSurfa
 static CagStatus add_piece(CagBrepWork *w, CagSurface *piece, size_t source, CagError *err) {
   CagBrepFace face = {
       .surface = piece, .whole = true, .first = w->brep->loop_count, .source = source};
-  face.flat = is_flat_patch(piece, &face.plane);
+  face.flat = is_flat_patch(piece, &face.carrier.frame);
   size_t index;
   CagStatus status = add_face(w, &face, &index, err);
   if (status) {
@@ -371,7 +371,7 @@ static CagStatus add_part(CagBrepWork *w, const CagRegion *r, size_t outer,
                           const CagTransform *frame, size_t source, CagError *err) {
   CagBrepFace face = {.flat = true, .first = w->brep->loop_count, .source = source};
   CagVec3 x = column(frame, 0);
-  face.plane = plane_frame(column(frame, 3), x, cag_cross(x, column(frame, 1)));
+  face.carrier.frame = plane_frame(column(frame, 3), x, cag_cross(x, column(frame, 1)));
   CagStatus status = rectangle_about(r, outer, frame, &face.surface, err);
   if (status) return status;
   size_t index;

@@ -3,9 +3,8 @@
 #include "interp/formats/brep_facets.h"
 
 #include <math.h>
+#include <string.h>
 
-#include "base/stop.h"
-#include "geom/curve/nurbs.h"
 #include "geom/mesh/facets.h"
 #include "interp/formats/brep_build.h"
 
@@ -31,22 +30,13 @@ static bool reserve_facets(CagBrep *b, const CagFacets *f) {
          cag_brep_reserve((void **)&b->shells, b->shell_count, f->shell_count, sizeof *b->shells);
 }
 
-static CagStatus add_edges(CagBrep *b, const CagFacets *f, CagError *err) {
-  static const double knots[4] = {0, 0, 1, 1};
+static void add_edges(CagBrep *b, const CagFacets *f) {
   const size_t vertex = b->vertex_count;
-  for (size_t i = 0; i < f->vertex_count; i++) b->vertices[b->vertex_count++] = f->vertices[i];
-  CagStatus status = CAG_OK;
-  for (size_t i = 0; !status && i < f->edge_count; i++) {
-    const size_t from = vertex + f->edges[i].from, to = vertex + f->edges[i].to;
-    const CagVec3 ends[2] = {b->vertices[from], b->vertices[to]};
-    CagCurve *line;
-    status = cag_curve_nurbs(ends, NULL, 2, 1, knots, 3, &line, err);
-    if (!status)
-      b->edges[b->edge_count++] =
-          (CagBrepEdge){.curve = line, .from = from, .to = to, .straight = true};
-    if (!status) status = cag_stop_check(err);
-  }
-  return status;
+  memcpy(b->vertices + vertex, f->vertices, f->vertex_count * sizeof *f->vertices);
+  b->vertex_count += f->vertex_count;
+  for (size_t i = 0; i < f->edge_count; i++)
+    b->edges[b->edge_count++] = (CagBrepEdge){
+        .from = vertex + f->edges[i].from, .to = vertex + f->edges[i].to, .straight = true};
 }
 
 // The plane of a face, with x along its first edge.
@@ -78,8 +68,11 @@ CagStatus cag_brep_add_facets(CagBrep *b, const CagMesh *m, CagBrepShape *shape,
   CagStatus status = cag_mesh_facets(m, COPLANAR * largest_coordinate(m), &f, err);
   if (status) return status;
   const size_t edge = b->edge_count, face = b->face_count, shell = b->shell_count;
-  status = reserve_facets(b, &f) ? add_edges(b, &f, err) : cag_fail_memory(err);
-  if (!status) status = add_plane_faces(b, &f, edge, err);
+  status = reserve_facets(b, &f) ? CAG_OK : cag_fail_memory(err);
+  if (!status) {
+    add_edges(b, &f);
+    status = add_plane_faces(b, &f, edge, err);
+  }
   for (size_t i = 0; !status && i < f.shell_count; i++)
     b->shells[b->shell_count++] = (CagBrepShell){face + f.shells[i].first, f.shells[i].count, true,
                                                  shell + f.shells[i].void_of};

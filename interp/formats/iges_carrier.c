@@ -124,7 +124,23 @@ static CagStatus revolved_surface(CagIges *w, const CagBrepFace *f, CagIgesSurfa
   cag_iges_real(w, 2 * M_PI);
   cag_iges_end(w, false);
   out->turned = true;
+  out->bent = generatrix.bent;
   out->parameters = parameter_map(0, generatrix.scale, generatrix.shift, 1, 0, -turn);
+  return CAG_OK;
+}
+
+// The NURBS form of an extruded curve over the length of a face.
+static CagStatus exact_extrusion(CagIges *w, const CagCurve *section, CagVec3 along,
+                                 CagIgesSurface *out, CagError *err) {
+  CagSurface *swept, *exact;
+  CagStatus status = cag_surface_extrude(section, along, 0, 1, &swept, err);
+  if (status) return status;
+  status = cag_surface_to_nurbs(swept, &exact, err);
+  cag_surface_release(swept);
+  if (status) return status;
+  out->at = cag_iges_nurbs_surface(w, exact, CAG_IGES_PART);
+  out->bent = true;
+  cag_surface_release(exact);
   return CAG_OK;
 }
 
@@ -142,9 +158,11 @@ static CagStatus extruded_surface(CagIges *w, const CagBrepFace *f, CagIgesSurfa
   CagStatus status = cag_curve_transform(c->profile, &shift, &section, err);
   if (status) return status;
   status = cag_curve_point(section, section->start, &start, err);
-  if (!status) status = cag_iges_curve(w, section, &directrix, err);
+  const bool bent = !status && cag_iges_is_offset_ellipse(section);
+  if (bent) status = exact_extrusion(w, section, cag_scaled(z, length), out, err);
+  else if (!status) status = cag_iges_curve(w, section, &directrix, err);
   cag_curve_release(section);
-  if (status) return status;
+  if (status || bent) return status;
   out->at = cag_iges_begin(w, 122, 0, CAG_IGES_PART);
   cag_iges_pointer(w, directrix.at);
   cag_iges_point(w, cag_madd(start, length, z));
@@ -157,7 +175,7 @@ CagStatus cag_iges_carrier(CagIges *w, const CagBrepFace *face, CagIgesSurface *
                            CagError *err) {
   const CagCarrier *c = &face->carrier;
   const double turn = face_turn(face), k = DEGREES;
-  *out = (CagIgesSurface){0, false, cag_transform_identity()};
+  *out = (CagIgesSurface){.parameters = cag_transform_identity()};
   switch (c->kind) {
   case CAG_CARRIER_PLANE: out->at = analytic_surface(w, 190, c, 0, 0); break;
   case CAG_CARRIER_CYLINDER:

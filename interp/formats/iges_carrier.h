@@ -9,6 +9,7 @@ typedef struct CagIgesSurface {
   CagIgesPointer at;
   bool turned;             // its normal is opposite to that of the carrier
   CagTransform parameters; // planar: from the carrier's parameters
+  bool bent;               // there is no such map, so that edges have no curves in the parameters
 } CagIgesSurface;
 
 // Writes the surface on which a face with a carrier lies.

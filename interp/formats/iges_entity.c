@@ -3,21 +3,47 @@
 #include "interp/formats/iges_entity.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "base/decimal.h"
 #include "base/utf8.h"
 
 // --- Lines ---
 
+// Fields of lines, and their counters, have 8 columns; files are limited to 9,999,999 lines, but
+// larger numbers would only make a line longer.
+#define COLUMN_WIDTH 8
+#define LINE_ROOM 240
+
+// Writes x, which is not negative, at the end of a column.
+static char *write_column(char *at, size_t width, char fill, long x) {
+  char digits[20];
+  const size_t n = (size_t)(cag_decimal_index(digits, (uint64_t)x) - digits);
+  for (size_t i = n; i < width; i++) *at++ = fill;
+  memcpy(at, digits, n);
+  return at + n;
+}
+
+static char *end_line(char *at, char section, long number) {
+  *at++ = section;
+  at = write_column(at, COLUMN_WIDTH - 1, ' ', number);
+  *at++ = '\n';
+  return at;
+}
+
 void cag_iges_end_line(CagIges *w) {
   if (w->column == 0) return;
-  w->line[w->column] = 0;
+  char *at = cag_atomic_file_reserve(w->parameters, LINE_ROOM);
   w->parameter_lines++;
+  memcpy(at, w->line, w->column);
+  memset(at + w->column, ' ', CAG_IGES_GLOBAL_COLUMNS - w->column);
   if (w->entity > 0)
-    cag_atomic_file_printf(w->parameters, "%-64s %7ldP%7ld\n", w->line, w->entity,
-                           w->parameter_lines);
-  else cag_atomic_file_printf(w->parameters, "%-72sG%7ld\n", w->line, w->parameter_lines);
+    at = write_column(at + CAG_IGES_PARAMETER_COLUMNS, COLUMN_WIDTH, ' ', w->entity);
+  else at += CAG_IGES_GLOBAL_COLUMNS;
+  cag_atomic_file_advance(w->parameters,
+                          end_line(at, w->entity > 0 ? 'P' : 'G', w->parameter_lines));
   w->column = 0;
 }
 
@@ -31,8 +57,9 @@ static void put_token(CagIges *w, const char *text, char separator) {
 }
 
 void cag_iges_integer(CagIges *w, long x) {
-  char text[24];
-  snprintf(text, sizeof text, "%ld", x);
+  char text[24], *at = text;
+  if (x < 0) *at++ = '-';
+  *cag_decimal_index(at, x < 0 ? -(uint64_t)x : (uint64_t)x) = 0;
   put_token(w, text, ',');
 }
 
@@ -40,14 +67,16 @@ void cag_iges_pointer(CagIges *w, CagIgesPointer p) { cag_iges_integer(w, p); }
 
 // Reals contain a point. The exponent of double precision is written with D.
 void cag_iges_real(CagIges *w, double x) {
-  char text[40], out[48];
+  char text[40];
   w->undefined |= !isfinite(x);
   cag_number_text(x == 0 ? 0 : x, text);
-  char *e = strchr(text, 'e');
-  if (e) *e++ = 0;
-  snprintf(out, sizeof out, "%s%s%s%s", text, strchr(text, '.') ? "" : ".", e ? "D" : "",
-           e ? e : "");
-  put_token(w, out, ',');
+  char *e = strchr(text, 'e'), exponent[8] = "";
+  if (e) {
+    *e = 0;
+    snprintf(exponent, sizeof exponent, "D%s", e + 1);
+  }
+  if (!strchr(text, '.')) strcat(text, ".");
+  put_token(w, strcat(text, exponent), ',');
 }
 
 static void put_character(CagIges *w, char c) {
@@ -99,9 +128,15 @@ void cag_iges_end(CagIges *w, bool named) {
   }
   w->line[w->column - 1] = ';';
   cag_iges_end_line(w);
-  CagIgesPointer d = w->entity;
-  cag_atomic_file_printf(w->directory, "%8d%8ld%8d%8d%8d%8d%8ld%8d%08dD%7ld\n", w->type,
-                         w->first_line, 0, 1, 0, 0, w->matrix, 0, w->status, d);
+  // Structure, line font, level, and view come between the first line of parameters and the matrix;
+  // line weight, color, number of lines, and form begin the second line.
+  const CagIgesPointer d = w->entity;
+  const long first[7] = {w->type, w->first_line, 0, 1, 0, 0, w->matrix};
+  char *at = cag_atomic_file_reserve(w->directory, LINE_ROOM);
+  for (size_t i = 0; i < 7; i++) at = write_column(at, COLUMN_WIDTH, ' ', first[i]);
+  at = write_column(at, COLUMN_WIDTH, ' ', 0); // no label display
+  at = write_column(at, COLUMN_WIDTH, '0', w->status);
+  cag_atomic_file_advance(w->directory, end_line(at, 'D', d));
   cag_atomic_file_printf(w->directory, "%8d%8d%8ld%8ld%8d%8s%8s%8s%8dD%7ld\n", w->type, 0,
                          -w->color, w->parameter_lines - w->first_line + 1, w->form, "", "", "", 0,
                          d + 1);
@@ -191,14 +226,22 @@ CagIgesPointer cag_iges_nurbs_surface(CagIges *w, const CagSurface *s, int statu
 
 // --- Lines and conics ---
 
-// A line (entity 110), whose parameter runs from 0 to 1.
+// Angles that differ by less are the same.
+#define ANGLE_ROUNDING 1e-9
+
+CagIgesPointer cag_iges_line(CagIges *w, CagVec3 from, CagVec3 to) {
+  const CagIgesPointer at = cag_iges_begin(w, 110, 0, CAG_IGES_PART);
+  cag_iges_point(w, from);
+  cag_iges_point(w, to);
+  cag_iges_end(w, false);
+  return at;
+}
+
 static void straight_curve(CagIges *w, const CagCurve *c, const CagNurbsView *v,
                            CagIgesCurve *out) {
   const double *a = v->homogeneous, *b = a + 4;
-  out->at = cag_iges_begin(w, 110, 0, CAG_IGES_PART);
-  cag_iges_point(w, cag_vec3(a[0] / a[3], a[1] / a[3], a[2] / a[3]));
-  cag_iges_point(w, cag_vec3(b[0] / b[3], b[1] / b[3], b[2] / b[3]));
-  cag_iges_end(w, false);
+  out->at = cag_iges_line(w, cag_vec3(a[0] / a[3], a[1] / a[3], a[2] / a[3]),
+                          cag_vec3(b[0] / b[3], b[1] / b[3], b[2] / b[3]));
   out->scale = 1 / (c->end - c->start);
   out->shift = -c->start * out->scale;
 }
@@ -272,11 +315,30 @@ static void elliptic_curve(CagIges *w, const CagCurve *c, double a, double b,
   out->shift = -quarter - turns;
 }
 
+bool cag_iges_is_offset_ellipse(const CagCurve *c) {
+  double a, b;
+  CagTransform frame;
+  if (!c->closed || !cag_curve_arc_view(c, &a, &b, &frame) || a == b) return false;
+  return fabs(remainder(c->start - (a < b ? M_PI / 2 : 0), 2 * M_PI)) > ANGLE_ROUNDING;
+}
+
+// Writes the exact NURBS form of a curve.
+static CagStatus exact_curve(CagIges *w, const CagCurve *c, CagIgesCurve *out, CagError *err) {
+  CagCurve *exact;
+  CagStatus status = cag_curve_to_nurbs(c, &exact, err);
+  if (status) return status;
+  out->bent = true;
+  status = cag_iges_nurbs_curve(w, exact, false, CAG_IGES_PART, &out->at, err);
+  cag_curve_release(exact);
+  return status;
+}
+
 CagStatus cag_iges_curve(CagIges *w, const CagCurve *c, CagIgesCurve *out, CagError *err) {
   double a, b;
   CagTransform frame;
   CagNurbsView v;
-  *out = (CagIgesCurve){0, 1, 0};
+  *out = (CagIgesCurve){.scale = 1};
+  if (cag_iges_is_offset_ellipse(c)) return exact_curve(w, c, out, err);
   if (cag_curve_arc_view(c, &a, &b, &frame)) {
     if (a == b) circular_curve(w, c, a, &frame, out);
     else elliptic_curve(w, c, a, b, &frame, out);

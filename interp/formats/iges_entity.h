@@ -63,7 +63,13 @@ CagIgesPointer cag_iges_nurbs_surface(CagIges *w, const CagSurface *s, int statu
 typedef struct CagIgesCurve {
   CagIgesPointer at;
   double scale, shift;
+  bool bent; // there is no such map
 } CagIgesCurve;
+// A line (entity 110), whose parameter runs from 0 to 1.
+CagIgesPointer cag_iges_line(CagIges *w, CagVec3 from, CagVec3 to);
+// Whether a curve is a whole ellipse that does not start on its longer axis. Readers take a closed
+// conic arc (entity 104) as an ellipse that starts there, so it must be written as a NURBS curve.
+bool cag_iges_is_offset_ellipse(const CagCurve *c);
 // A line of degree 1, an arc, or a curve of a NURBS kind.
 CagStatus cag_iges_curve(CagIges *w, const CagCurve *c, CagIgesCurve *out, CagError *err);
 

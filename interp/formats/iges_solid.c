@@ -32,7 +32,7 @@ static void number_shell(const CagBrep *b, const CagBrepShell *shell, SolidLists
         const CagBrepEdge *e = &b->edges[index];
         number_vertex(s, e->from);
         number_vertex(s, e->to);
-        if (e->curve && s->edge[index] == 0) s->edge[index] = ++s->edge_count;
+        if (!cag_brep_is_degenerate(e) && s->edge[index] == 0) s->edge[index] = ++s->edge_count;
       }
 }
 
@@ -50,6 +50,13 @@ static CagStatus vertex_list(CagIges *w, SolidLists *s, CagError *err) {
   return CAG_OK;
 }
 
+static CagStatus edge_curve(CagIges *w, const CagBrepEdge *e, CagIgesCurve *out, CagError *err) {
+  if (e->curve) return cag_iges_curve(w, e->curve, out, err);
+  *out = (CagIgesCurve){
+      .at = cag_iges_line(w, w->brep->vertices[e->from], w->brep->vertices[e->to]), .scale = 1};
+  return CAG_OK;
+}
+
 static CagStatus edge_list(CagIges *w, SolidLists *s, CagError *err) {
   const CagBrep *b = w->brep;
   size_t *order = cag_calloc(s->edge_count + 1, sizeof *order);
@@ -58,7 +65,7 @@ static CagStatus edge_list(CagIges *w, SolidLists *s, CagError *err) {
   for (size_t i = 0; !status && i < b->edge_count; i++)
     if (s->edge[i] > 0) order[s->edge[i] - 1] = i;
   for (size_t i = 0; !status && i < s->edge_count; i++)
-    status = cag_iges_curve(w, b->edges[order[i]].curve, &curves[i], err);
+    status = edge_curve(w, &b->edges[order[i]], &curves[i], err);
   if (!status) {
     s->edges = cag_iges_begin(w, 504, 1, CAG_IGES_PART);
     cag_iges_integer(w, (long)s->edge_count);
@@ -100,10 +107,11 @@ static CagStatus use_trace(CagIges *w, const CagBrepUse *use, const CagTransform
 static void put_use(CagIges *w, const SolidLists *s, const CagBrepUse *use, bool backwards,
                     CagIgesPointer trace) {
   const CagBrepEdge *e = &w->brep->edges[use->edge];
-  cag_iges_integer(w, !e->curve); // 0: an edge, 1: a vertex
-  cag_iges_pointer(w, e->curve ? s->edges : s->vertices);
-  cag_iges_integer(w, (long)(e->curve ? s->edge[use->edge] : s->vertex[e->from]));
-  cag_iges_integer(w, e->curve ? !backwards : 1);
+  const bool vertex = cag_brep_is_degenerate(e);
+  cag_iges_integer(w, vertex); // 0: an edge, 1: a vertex
+  cag_iges_pointer(w, vertex ? s->vertices : s->edges);
+  cag_iges_integer(w, (long)(vertex ? s->vertex[e->from] : s->edge[use->edge]));
+  cag_iges_integer(w, vertex || !backwards);
   cag_iges_integer(w, trace > 0); // the number of curves
   if (trace == 0) return;
   cag_iges_integer(w, 0); // it need not be along a parameter
@@ -118,7 +126,7 @@ static CagStatus solid_loop(CagIges *w, const SolidLists *s, const CagBrepLoop *
   CagStatus status = traces ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < loop->count; i++) {
     const CagBrepUse *use = &w->brep->uses[loop->first + i];
-    if (use->trace && !plane)
+    if (use->trace && !plane && !surface->bent)
       status = use_trace(w, use, &surface->parameters, use->reversed != against, &traces[i], err);
   }
   if (!status) {

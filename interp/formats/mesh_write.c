@@ -7,28 +7,8 @@
 #include <stdio.h>
 
 #include "base/array.h"
+#include "base/decimal.h"
 #include "base/memory.h"
-
-static const char two_digits[] = "00010203040506070809101112131415161718192021222324252627282930313"
-                                 "23334353637383940414243444546474849505152535455565758596061626364"
-                                 "65666768697071727374757677787980818283848586878889909192939495969"
-                                 "79899";
-
-char *cag_mesh_write_index(char *at, uint64_t n) {
-  char digits[20];
-  int k = 20;
-  while (n >= 100) {
-    k -= 2;
-    memcpy(digits + k, two_digits + 2 * (n % 100), 2);
-    n /= 100;
-  }
-  if (n >= 10) {
-    k -= 2;
-    memcpy(digits + k, two_digits + 2 * n, 2);
-  } else digits[--k] = (char)('0' + n);
-  memcpy(at, digits + k, (size_t)(20 - k));
-  return at + 20 - k;
-}
 
 enum { DIGITS = 9 };
 
@@ -65,7 +45,7 @@ char *cag_mesh_write_number(char *at, double x) {
   uint64_t scaled = (uint64_t)(size * power[decimals] + 0.5);
   uint64_t whole = scaled / whole_power[decimals], fraction = scaled % whole_power[decimals];
   if (x < 0) *at++ = '-';
-  at = cag_mesh_write_index(at, whole);
+  at = cag_decimal_index(at, whole);
   if (fraction == 0) return at;
   *at++ = '.';
   return write_fraction(at, fraction, decimals);

@@ -12,8 +12,6 @@
 // Writes x with 9 significant digits, which preserve a float, without trailing zeros, in at most 24
 // bytes. Uses plain decimals between 1e-5 and 1e9. Returns the end.
 char *cag_mesh_write_number(char *at, double x);
-// Writes the decimal digits of n, at most 20 bytes. Returns the end.
-char *cag_mesh_write_index(char *at, uint64_t n);
 // Writes a name as a single word: white space and control characters become '_'. Writes up to
 // `room` bytes, without a zero. Returns the end.
 char *cag_mesh_write_word(char *at, const char *name, size_t room);

@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 
+#include "base/decimal.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "interp/formats/mesh_write.h"
@@ -87,7 +88,7 @@ static void write_material_name(const ObjMaterials *m, size_t number, CagAtomicF
   char *at = cag_mesh_write_word(start, material_name(m->list.items[number]), WORD_BYTES);
   if (m->taken[number]) {
     *at++ = '.';
-    at = cag_mesh_write_index(at, m->first[number] + 1);
+    at = cag_decimal_index(at, m->first[number] + 1);
   }
   *at++ = '\n';
   cag_atomic_file_advance(file, at);
@@ -140,13 +141,13 @@ static void write_faces(const CagMesh *m, const uint32_t *number, const ObjCount
       for (int j = 0; j < 3; j++) {
         uint32_t k = m->triangles[3 * t + j];
         *at++ = ' ';
-        at = cag_mesh_write_index(at, number[k]);
+        at = cag_decimal_index(at, number[k]);
         if (!m->uv && !m->normals) continue;
         *at++ = '/';
-        if (m->uv) at = cag_mesh_write_index(at, before->parameters + k + 1);
+        if (m->uv) at = cag_decimal_index(at, before->parameters + k + 1);
         if (!m->normals) continue;
         *at++ = '/';
-        at = cag_mesh_write_index(at, before->normals + k + 1);
+        at = cag_decimal_index(at, before->normals + k + 1);
       }
       *at++ = '\n';
     }

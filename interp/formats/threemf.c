@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 
+#include "base/decimal.h"
 #include "base/memory.h"
 #include "base/stop.h"
 #include "interp/formats/mesh_copies.h"
@@ -128,10 +129,10 @@ static char *put_triangle_colors(const Model *m, size_t i, const uint32_t *corne
   static const char *const names[] = {"\" p1=\"", "\" p2=\"", "\" p3=\""};
   const CagMesh *mesh = m->parts[i].mesh;
   at = put_text(at, "\" pid=\"");
-  at = cag_mesh_write_index(at, scale_id(m, i));
+  at = cag_decimal_index(at, scale_id(m, i));
   for (int j = 0; j < 3; j++) {
     at = put_text(at, names[j]);
-    at = cag_mesh_write_index(at, (uint64_t)scale_step(&mesh->scale, mesh->uv[2 * corners[j]]));
+    at = cag_decimal_index(at, (uint64_t)scale_step(&mesh->scale, mesh->uv[2 * corners[j]]));
   }
   return at;
 }
@@ -174,11 +175,11 @@ static CagStatus write_triangles(Model *m, size_t part, const float *p, const ui
       const uint32_t *k = mesh->triangles + 3 * t;
       if (cag_mesh_shrinks(p, k)) continue;
       at = put_text(at, "     <triangle v1=\"");
-      at = cag_mesh_write_index(at, number[k[0]]);
+      at = cag_decimal_index(at, number[k[0]]);
       at = put_text(at, "\" v2=\"");
-      at = cag_mesh_write_index(at, number[k[1]]);
+      at = cag_decimal_index(at, number[k[1]]);
       at = put_text(at, "\" v3=\"");
-      at = cag_mesh_write_index(at, number[k[2]]);
+      at = cag_decimal_index(at, number[k[2]]);
       if (mesh->scale.kind) at = put_triangle_colors(m, part, k, at);
       at = put_text(at, "\"/>\n");
     }

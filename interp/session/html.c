@@ -169,6 +169,11 @@ void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, siz
     cag_html_text(out, e->output, strlen(e->output));
     fputs("</samp></pre>\n", out);
   }
+  if (e && e->unavailable)
+    fputs(
+        "<p class=\"missing\">This example needs the package <code>cag-brep</code>, which was not "
+        "installed when this page was made.</p>\n",
+        out);
   write_edit_link(s, spot, shown);
   cag_free(shown);
   fputs("</div>\n", out);

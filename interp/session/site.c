@@ -191,10 +191,11 @@ static void report_site(const CagSite *s, const char *format, ...) {
 
 // Reports each failed example as an error of the documentation.
 static int judge(CagSite *s) {
-  size_t pictures = 0, wrong = 0;
+  size_t pictures = 0, wrong = 0, unavailable = 0;
   for (size_t i = 0; i < s->count; i++) {
     const CagSiteExample *e = &s->examples[i];
     pictures += e->picture != NULL;
+    unavailable += e->unavailable;
     if (!e->failure) continue;
     wrong++;
     cag_diagnostics_add(&s->session->diagnostics, CAG_ERR_doc_example, NULL, (CagSpan){0, 0},
@@ -202,6 +203,9 @@ static int judge(CagSite *s) {
                         e->about, e->text, e->failure);
   }
   report_site(s, "%zu scripts run", s->count);
+  if (unavailable)
+    report_site(s, "%zu scripts have no output, because the program cag-brep is missing",
+                unavailable);
   if (pictures) report_site(s, "%zu pictures", pictures);
   return wrong ? CAG_STATUS_SCRIPT : CAG_STATUS_OK;
 }

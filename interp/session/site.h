@@ -23,7 +23,8 @@ typedef struct CagSiteExample {
   char *output;   // printed output, including an expected error
   char *picture;  // "pictures/0123456789abcdef.png"; NULL: none
   size_t picture_width, picture_height;
-  char *failure; // why it failed; NULL: it succeeded
+  char *failure;    // why it failed; NULL: it succeeded
+  bool unavailable; // it needs the program cag-brep, which is missing: there is no output
 } CagSiteExample;
 
 // A user's file that the site documents.

@@ -92,6 +92,12 @@ for file in index.html index.js search.js style.css errors.html guide/getting-st
   exists "site/$file"
 done
 
+it 'without cag-brep, examples that need it are shown without output'
+try_command env CAG_BREP="$PWD/none" "$CAG" doc --html kernel-free --no-pictures
+status 0
+says 'scripts have no output, because the program cag-brep is missing'
+grep -q 'needs the package <code>cag-brep</code>' kernel-free/functions/exact.html || wrong 'the page does not name the package'
+
 it 'examples have no links to a playground, unless its address is given'
 ! grep -rq 'class="edit"' site || wrong 'there is a link'
 try doc --html linked --no-pictures --playground ../play/

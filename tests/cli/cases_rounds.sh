@@ -159,6 +159,11 @@ show translate(sphere(5), [100, 0, 0]) |> named("ball é")'
   script one.cag 'show box([1, 2, 3])'
   "$CAG" export -q one.cag -o one.step > /dev/null 2>&1
   "$CAG" export -q one.cag -o one.igs > /dev/null 2>&1
+  # The longer axis of the ellipse is the second one, so that its seam is not where readers expect it.
+  script oval.cag 'show prism(region(ellipse(5, 9)), 10) - translate(box([20, 20, 5]), [-10, -10, -2])'
+  "$CAG" export -q oval.cag -o oval.igs > /dev/null 2>&1
+  script ring.cag 'show revolve(ellipse(2, 5, center: [20, 0])) - translate(box([50, 50, 50]), [-25, 0, -25])'
+  "$CAG" export -q ring.cag -o ring.igs > /dev/null 2>&1
   mkdir -p folder
   cp one.step folder/inner.step
   head -c 4000 written.step > cut.step
@@ -175,6 +180,8 @@ print type_of(S) == "solid", near(volume(S), 6), len(edges_of(S)) == 12
 print near(volume(fillet(S, 0.25)), volume(rounded_box([1, 2, 3], 0.25)), relative: 1e-8)'
 holds 'an IGES file is read' 'S = read_iges("one.igs")
 print near(volume(S), 6), len(faces_of(S)) == 6'
+holds 'whole ellipses in IGES files have their volume' 'print near(volume(read_iges("oval.igs")), 7 * 45 * pi, relative: 1e-8)
+print near(volume(read_iges("ring.igs")), 10 * pi * 20 * pi, relative: 1e-8)'
 fails 'a STEP file that is missing is an error' E0317 'none.step' 'read_step("none.step")'
 fails 'a file of another format is an error' E0740 '`one.igs` is not a STEP file' 'read_step("one.igs")'
 fails 'a STEP file is no IGES file' E0740 '`one.step` is not an IGES file' 'read_iges("one.step")'

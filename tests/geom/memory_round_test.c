@@ -2,6 +2,8 @@
 // interrupted work. Each fault is reported, and nothing leaks.
 
 #include "faults.h"
+#include "geom/boundary/patch.h"
+#include "geom/mesh/smooth.h"
 #include "geom/solid/hollow.h"
 #include "geom/solid/incline.h"
 #include "geom/solid/rolling.h"
@@ -28,6 +30,27 @@ typedef struct Rounded {
 QUESTION(recognition) {
   CagSolid *s = NULL;
   return drop_solid(cag_solid_recognized(given, COARSE, &s, e), &s);
+}
+// The faces of a boundary as surfaces, whose loops have no seams.
+QUESTION(surfaces) {
+  const CagBoundary *b = given;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < b->face_count; i++) {
+    CagSurface *face;
+    status = cag_boundary_surface(b, i, &face, e);
+    if (status) break;
+    fault_found(face->u1);
+    cag_surface_release(face);
+  }
+  return status;
+}
+QUESTION(smoothing) {
+  CagMesh *m;
+  const CagStatus status = cag_mesh_smooth(given, 0.7, &m, e);
+  if (status) return status;
+  fault_found((double)m->vertex_count);
+  cag_mesh_release(m);
+  return status;
 }
 QUESTION(rolling) {
   const Rounded *r = given;
@@ -76,6 +99,24 @@ static Rounded rounded_box(void) {
   return r;
 }
 
+static void faces_and_normals_report_faults(void **state) {
+  (void)state;
+  CagSolid *block = holed_block(), *found;
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagMesh *m;
+  size_t n;
+  how.tolerance = COARSE;
+  OK(cag_solid_tessellate(block, &how, &m, &err));
+  found = recognized(block, COARSE);
+  fault_problems = 0;
+  fault_steps = FAULTS_OF_QUICK;
+  try_faults("surfaces", "block", surfaces, cag_solid_boundaries(found, &n));
+  try_faults("smoothing", "block", smoothing, m);
+  assert_int_equal(fault_problems, 0);
+  cag_mesh_release(m);
+  cag_solid_release(found);
+}
+
 static void meshes_report_faults(void **state) {
   (void)state;
   Rounded r = rounded_box();
@@ -96,6 +137,7 @@ static void meshes_report_faults(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(meshes_report_faults)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(faces_and_normals_report_faults),
+                                     cmocka_unit_test(meshes_report_faults)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

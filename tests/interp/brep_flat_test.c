@@ -62,7 +62,7 @@ static bool is_flat(const CagVec3 *p, CagTransform *plane) {
   OK(cag_brep_of_scene(&f.scene, NULL, CAG_BREP_STEP, &b, &err));
   assert_int_equal(b.face_count, 1);
   const bool flat = b.faces[0].flat;
-  *plane = b.faces[0].plane;
+  *plane = b.faces[0].carrier.frame;
   cag_brep_free(&b);
   fixture_end(&f);
   return flat;

@@ -8,9 +8,9 @@
 static CagVec3 in_plane(const CagBrepFace *f, CagVec3 p) {
   double x[3] = {0};
   for (int j = 0; j < 3; j++)
-    x[j] = (p.x - f->plane.m[0][3]) * f->plane.m[0][j] +
-           (p.y - f->plane.m[1][3]) * f->plane.m[1][j] +
-           (p.z - f->plane.m[2][3]) * f->plane.m[2][j];
+    x[j] = (p.x - f->carrier.frame.m[0][3]) * f->carrier.frame.m[0][j] +
+           (p.y - f->carrier.frame.m[1][3]) * f->carrier.frame.m[1][j] +
+           (p.z - f->carrier.frame.m[2][3]) * f->carrier.frame.m[2][j];
   return cag_vec3(x[0], x[1], x[2]);
 }
 

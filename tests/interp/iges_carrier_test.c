@@ -91,6 +91,36 @@ static void near_curve(const CagCurve *c, double scale, double shift) {
   fixture_end(&f);
 }
 
+// Readers take a closed conic arc as an ellipse from its longer axis on.
+static void whole_ellipses_start_on_their_longer_axis(void **state) {
+  (void)state;
+  static const struct {
+    double a, b, start;
+    bool bent;
+  } ROWS[] = {
+      {3, 2, 0, false},        {2, 3, 0, true},         {3, 2, 1, true}, {2, 3, -1.5 * M_PI, false},
+      {2, 3, M_PI / 2, false}, {3, 2, 4 * M_PI, false}, {3, 3, 1, false}};
+  const CagTransform frame = cag_transform_identity();
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    Fixture f;
+    CagIgesCurve out;
+    CagBrepFace face = a_face(CAG_CARRIER_EXTRUDED, 0, 0, 0, 2 * M_PI, -4, 6);
+    CagIgesSurface surface;
+    CagCurve *c;
+    OK(cag_curve_arc(ROWS[i].a, ROWS[i].b, ROWS[i].start, ROWS[i].start + 2 * M_PI, &frame, &c,
+                     &err));
+    fixture_begin(&f);
+    OK(cag_iges_curve(&f.writer, c, &out, &err));
+    assert_int_equal(out.bent, ROWS[i].bent);
+    OK(cag_curve_to_space(c, &face.carrier.profile, &err));
+    OK(cag_iges_carrier(&f.writer, &face, &surface, &err));
+    assert_int_equal(surface.bent, ROWS[i].bent);
+    cag_curve_release(face.carrier.profile);
+    cag_curve_release(c);
+    fixture_end(&f);
+  }
+}
+
 static void curves_tell_their_parameters(void **state) {
   (void)state;
   const CagTransform frame = cag_transform_identity();
@@ -117,6 +147,7 @@ int main(void) {
       cmocka_unit_test(a_torus_has_the_angle_in_its_section_first),
       cmocka_unit_test(a_cone_is_a_revolved_line),
       cmocka_unit_test(an_extrusion_has_parameters_from_0_to_1),
+      cmocka_unit_test(whole_ellipses_start_on_their_longer_axis),
       cmocka_unit_test(curves_tell_their_parameters),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

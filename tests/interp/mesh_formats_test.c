@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "base/decimal.h"
 #include "geom/solid/tessellate.h"
 #include "interp/formats/mesh_copies.h"
 #include "interp/formats/mesh_formats.h"
@@ -382,7 +383,7 @@ static void indices_are_decimal_whatever_their_length(void **state) {
     for (int k = -1; k <= 1; k++) {
       const uint64_t x = k < 0 ? n - 1 : k > 0 ? n / 9 * 8 + (uint64_t)digits : n;
       char found[21] = {0}, expected[21];
-      *cag_mesh_write_index(found, x) = 0;
+      *cag_decimal_index(found, x) = 0;
       snprintf(expected, sizeof expected, "%llu", (unsigned long long)x);
       assert_string_equal(found, expected);
     }
