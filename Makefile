@@ -65,12 +65,15 @@ LDLIBS_ALL := $(PKG_LIBS) -lm -lpthread $(SANITIZE) $(LDFLAGS)
 # There are hundreds of test programs: LLVM's linker takes a quarter of the time.
 CFLAGS_TEST := $(CFLAGS_ALL) $(TEST_OPT) $(if $(shell command -v ld.lld),-fuse-ld=lld)
 
-# The helper program links Open CASCADE, without the parts that draw.
+# The helper program links Open CASCADE, without the parts that draw. The modules, which it loads when they are needed, link the rest.
 OCCT_H     := $(wildcard /usr/include/opencascade/BRepAlgoAPI_Fuse.hxx)
 OCCT_LIBS  := $(patsubst %,-l%,TKSTEP TKSTEP209 TKSTEPAttr TKSTEPBase TKIGES TKXSBase TKOffset TKFillet TKBool TKBO TKPrim TKShHealing \
               TKTopAlgo TKBRep TKGeomAlgo TKGeomBase TKG3d TKG2d TKMath TKernel)
 BREP_OPT   ?= -O2
-BREP_SRC   := $(sort $(wildcard brep/*.cpp))
+BREP_MODULES := cag-brep-exchange cag-brep-operations
+BREP_EXCHANGE := brep/exchange.cpp brep/exchange_module.cpp
+BREP_OPERATIONS := brep/blends.cpp brep/offsets.cpp brep/operations.cpp brep/operations_module.cpp
+BREP_SRC   := $(filter-out $(BREP_EXCHANGE) $(BREP_OPERATIONS),$(sort $(wildcard brep/*.cpp)))
 
 BASE_SRC   := $(shell find base -name '*.c' | sort)
 LANG_SRC   := $(shell find lang -name '*.c' | sort)
@@ -151,14 +154,19 @@ $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
 $(BUILD)/cag: $(CLI_OBJ) $(BUILD)/libcag.a
 	$Q$(CC) $^ -o $@ $(LDLIBS_ALL)
 
-brep: $(BUILD)/cag-brep
+brep: $(BUILD)/cag-brep $(patsubst %,$(BUILD)/%.so,$(BREP_MODULES))
 $(BUILD)/obj/brep/%.o: brep/%.cpp
 	@mkdir -p $(@D)
 	@echo "c++ $<"
 	$Q$(CXX) -std=c++17 $(BREP_OPT) -g -Wall -Wextra -Werror -MMD -MP -I. -isystem $(dir $(OCCT_H)) -DCAG_VERSION='"$(VERSION)"' $(SANITIZE) \
-	  $(CXXFLAGS) -c $< -o $@
+	  $(CXXFLAGS) -fPIC -c $< -o $@
+# The modules use functions of the program.
 $(BUILD)/cag-brep: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_SRC))
-	$Q$(CXX) $^ -o $@ -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
+	$Q$(CXX) $^ -o $@ -rdynamic -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
+$(BUILD)/cag-brep-exchange.so: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_EXCHANGE))
+$(BUILD)/cag-brep-operations.so: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_OPERATIONS))
+$(patsubst %,$(BUILD)/%.so,$(BREP_MODULES)):
+	$Q$(CXX) -shared $^ -o $@ -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
 
 # Writes the program's tables, as input for tools/*.sh.
 $(BUILD)/tools/tables: tools/tables.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
@@ -353,7 +361,8 @@ install: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man
 	ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/$(LIBDIR)/libcag.so
 	install -m 644 include/cag.h $(DESTDIR)$(PREFIX)/include/cag.h
 	if [ -x $(BUILD)/cag-brep ]; then \
-	  install -d $(DESTDIR)$(PREFIX)/lib/cag && install -m 755 $(BUILD)/cag-brep $(DESTDIR)$(PREFIX)/lib/cag/cag-brep; fi
+	  install -d $(DESTDIR)$(PREFIX)/lib/cag && install -m 755 $(BUILD)/cag-brep $(DESTDIR)$(PREFIX)/lib/cag/cag-brep && \
+	  install -m 644 $(patsubst %,$(BUILD)/%.so,$(BREP_MODULES)) $(DESTDIR)$(PREFIX)/lib/cag; fi
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@LIBS@|$(strip $(PKG_LIBS))|' tools/libcag.pc.in \
 	  > $(DESTDIR)$(PREFIX)/$(LIBDIR)/pkgconfig/libcag.pc
 	$(BUILD)/tools/tables > $(BUILD)/tables.txt

@@ -9,6 +9,7 @@ CAG, the program, exports the STEP and IGES files that are read again; without i
 import math
 import os
 import random
+import shutil
 import struct
 import subprocess
 import sys
@@ -820,6 +821,19 @@ def test_damaged_bodies(h):
         changed[noise.randrange(len(changed))] ^= 1 << noise.randrange(8)
         assert h.fails(EVALUATE, solid(BODY, text(bytes(changed)))).reason == FAIL_INPUT
     assert h.fails(EVALUATE, solid(BODY, text(part.body[:100]))).reason == FAIL_INPUT
+
+
+def test_a_missing_module(h):
+    with tempfile.TemporaryDirectory() as folder:
+        alone = os.path.join(folder, "cag-brep")
+        shutil.copy(HELPER, alone)
+        other = Helper(alone)
+        failure = other.fails(FILLET, fillets(box(1, 1, 1), (0, 0.1, 0.1)))
+        assert failure.reason == FAIL_METHOD
+        assert "cannot load" in failure.what and "cag-brep-operations.so" in failure.what
+        # It still answers the requests that need no module.
+        near(other.one(EVALUATE, box(1, 2, 3)).volume, 6)
+        assert other.close() == 0
 
 
 def test_the_end_of_input(h):
