@@ -8,6 +8,7 @@
 
 #include "brep/curves.hpp"
 #include "brep/measure.hpp"
+#include "brep/poles.hpp"
 #include "brep/solids.hpp"
 
 #include <BRepClass3d.hxx>
@@ -151,6 +152,7 @@ bool complete_edges(const TopoDS_Solid &solid) {
   BRep_Builder builder;
   for (const TopoDS_Shape &shape : boundary_parts(solid, TopAbs_FACE)) {
     const TopoDS_Face face = TopoDS::Face(shape.Oriented(TopAbs_FORWARD));
+    incomplete = straighten_meridians(face) || incomplete;
     for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
       const TopoDS_Edge edge = TopoDS::Edge(it.Current());
       double first, last;
