@@ -54,6 +54,13 @@ static std::string make_result(const std::vector<Part> &parts) {
     out.u32(part.has_color);
     if (part.has_color)
       for (const double channel : part.color) out.f64(channel);
+    if (part.solid.IsNull()) {
+      out.u32(static_cast<uint32_t>(part.original));
+      for (int i = 1; i <= 3; ++i)
+        for (int k = 1; k <= 4; ++k) out.f64(part.placement.Value(i, k));
+      continue;
+    }
+    out.u32(CAG_BREP_NONE);
     const bool changed = complete_edges(part.solid);
     out.text(write_body(part.solid));
     write_boundary(out, part.solid, changed ? measure(part.solid) : measures_of(part.solid));

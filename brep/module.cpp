@@ -9,7 +9,10 @@ void add_valid_parts(std::vector<Part> &parts, const Solids &solids, const char 
   for (const TopoDS_Solid &solid : solids) {
     const std::string faults = faults_of(solid);
     if (!faults.empty()) throw Failure{CAG_BREP_FAIL_CHECK, faults};
-    parts.push_back({solid, name});
+    Part part;
+    part.solid = solid;
+    part.name = name;
+    parts.push_back(part);
   }
 }
 

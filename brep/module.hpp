@@ -8,17 +8,20 @@
 #include "brep/codec.hpp"
 #include "brep/solids.hpp"
 
+#include <gp_Trsf.hxx>
 #include <string>
 #include <vector>
 
 namespace brep {
 
-// A solid of a result.
+// A solid of a result: one of its own, or a copy of an earlier part.
 struct Part {
-  TopoDS_Solid solid;
+  TopoDS_Solid solid; // null: a copy
   std::string name = "";
   bool has_color = false;
-  double color[3] = {0, 0, 0}; // linear red, green, blue
+  double color[3] = {0, 0, 0};   // linear red, green, blue
+  size_t original = 0;           // of a copy: the index of the part
+  gp_Trsf placement = gp_Trsf(); // rigid: maps the original to the copy
 };
 
 // Adds solids under one name. Fails if one is not valid.

@@ -20,10 +20,19 @@ CagKernel *cag_kernel_new(void);
 // Ends the program. NULL is allowed.
 void cag_kernel_free(CagKernel *k);
 
-// Boundaries of the connected parts of a solid.
+// Where a part is that has the shape of an earlier one.
+#define CAG_NOT_COPIED SIZE_MAX
+typedef struct CagBoundaryCopy {
+  size_t original;        // its index, or CAG_NOT_COPIED
+  CagTransform placement; // rigid: maps the original to the copy
+} CagBoundaryCopy;
+
+// Boundaries of the connected parts of a solid. Copies, which only files have, have a name, a color,
+// and a volume, but no faces.
 typedef struct CagBoundaries {
   CagBoundary *items;
   size_t count;
+  CagBoundaryCopy *copies; // as many as items; NULL: none is a copy
 } CagBoundaries;
 void cag_boundaries_free(CagBoundaries *b);
 

@@ -725,9 +725,13 @@ def test_step_assembly(h):
         parts = h.ask(READ_STEP, text(path))
     assert [part.name for part in parts] == ["Stein \u00df"] * 2, [part.name for part in parts]
     at(parts[0].centroid, (90, 5, 15), 1e-7)  # turned by 90 degrees about z
-    at(parts[1].centroid, (5, 210, 15), 1e-7)
+    near(parts[0].volume, 6000)
+    # The second one is a copy, with its centroid at (5, 210, 15).
+    assert parts[1].original == 0
+    rows = [parts[1].placement[i:i + 4] for i in (0, 4, 8)]
+    at([dot(row[:3], parts[0].centroid) + row[3] for row in rows], (5, 210, 15), 1e-7)
+    at([dot(rows[i][:3], rows[k][:3]) for i in range(3) for k in range(3)], (1, 0, 0, 0, 1, 0, 0, 0, 1), 1e-12)
     for part in parts:
-        near(part.volume, 6000)
         at(part.color, (1, 0, 0))
 
 
