@@ -104,7 +104,8 @@ PAGE     := $(sort $(wildcard web/dist/*.gz))
 .PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors brep web check-web fonts playground screenshots vsix
 .SECONDARY:
 # The program with Clang is for tests of the C code, which need no helper.
-all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so $(if $(OCCT_H),$(if $(filter clang,$(CC)),,brep))
+HAS_BREP := $(if $(OCCT_H),$(if $(filter clang,$(CC)),,yes))
+all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so $(if $(HAS_BREP),brep)
 
 $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)
@@ -167,6 +168,12 @@ $(BUILD)/cag-brep-exchange.so: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_EXCHANGE
 $(BUILD)/cag-brep-operations.so: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_OPERATIONS))
 $(patsubst %,$(BUILD)/%.so,$(BREP_MODULES)):
 	$Q$(CXX) -shared $^ -o $@ -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
+
+# A test of a part of the program, which tests/brep/protocol.py runs.
+$(BUILD)/tests/brep/%: tests/brep/%.cpp $(patsubst %.cpp,$(BUILD)/obj/%.o,$(filter-out brep/main.cpp,$(BREP_SRC)))
+	@mkdir -p $(@D)
+	@echo "c++ $<"
+	$Q$(CXX) -std=c++17 $(BREP_OPT) -g -Wall -Wextra -Werror -I. -isystem $(dir $(OCCT_H)) $^ -o $@ -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
 
 # Writes the program's tables, as input for tools/*.sh.
 $(BUILD)/tools/tables: tools/tables.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
@@ -231,7 +238,7 @@ $(BUILD)/tests/fuzz/memory: tests/fuzz/memory.c $(BUILD)/libcag.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_TEST) $< $(BUILD)/libcag.a -o $@ $(WRAP) $(LDLIBS_ALL)
 
-test-programs: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man $(call UNIT,base) $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz $(BUILD)/tests/fuzz/memory
+test-programs: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man $(call UNIT,base) $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz $(BUILD)/tests/fuzz/memory $(if $(HAS_BREP),$(BUILD)/tests/brep/poles_test)
 test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh
 

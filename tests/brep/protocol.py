@@ -18,6 +18,7 @@ import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from client import *  # noqa: E402,F403
+import turned_step  # noqa: E402
 
 HELPER = os.path.abspath(sys.argv[1])
 CAG = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 and sys.argv[2] else None
@@ -742,6 +743,43 @@ def test_step_in_other_units(h):
         near(part.volume, 6000e9)
         unicode_name = changed_step(folder, [("'brick'", r"'\X2\7816\X0\'")])
         assert h.one(READ_STEP, text(unicode_name)).name == "\u7816"
+
+
+def read_turned(h, kind):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "a.step")
+        with open(path, "w") as f:
+            f.write(turned_step.KINDS[kind]())
+        return h.one(READ_STEP, text(path))
+
+
+def test_step_beyond_the_apex_of_a_cone(h):
+    part = read_turned(h, "cone")
+    near(part.volume, 6 * PI / 3 * (25 + 10 + 4))
+    cone = part.faces[part.kinds(CONICAL)[0]]
+    v0, v1 = cone.bounds[2:]
+    at(sorted(cone.surface.radius + v * math.sin(cone.surface.angle) for v in (v0, v1)), (2, 5))
+    assert cone.surface.radius > 0
+
+
+def test_step_within_a_torus(h):
+    part = read_turned(h, "torus")
+    # The integral of pi (sqrt(81 - z^2) - 4)^2 for z from -3 to 3.
+    across = 3 * math.sqrt(81 - 9) + 81 * math.asin(3 / 9)
+    near(part.volume, PI * ((81 + 16) * 6 - 2 * 27 / 3 - 2 * 4 * across))
+    face = part.faces[part.kinds(REVOLVED)[0]]
+    for v in face.bounds[2:]:
+        x, y, z = face.surface.at(0.5, v)
+        near(math.hypot(x, y), math.sqrt(81 - 9) - 4)
+        near(abs(z), 3)
+
+
+def test_seams_at_poles(h):
+    program = os.path.join(os.path.dirname(HELPER), "tests", "brep", "poles_test")
+    if not os.path.exists(program):
+        raise Skipped("poles_test is not built")
+    run = subprocess.run([program], stdout=subprocess.PIPE, text=True)
+    assert run.returncode == 0, run.stdout
 
 
 def test_damaged_files(h):
