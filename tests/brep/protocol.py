@@ -750,7 +750,9 @@ def read_turned(h, kind):
         path = os.path.join(folder, "a.step")
         with open(path, "w") as f:
             f.write(turned_step.KINDS[kind]())
-        return h.one(READ_STEP, text(path))
+        parts = h.ask(READ_STEP, text(path))
+    assert all(part.original == 0 for part in parts[1:])
+    return parts[0]
 
 
 def test_step_beyond_the_apex_of_a_cone(h):

@@ -2,6 +2,7 @@
 """Writes STEP files of solids whose surfaces are described in unusual ways, which the standard allows.
 
     turned_step.py cone     a frustum, z from 0 to 6, radii 5 and 2: on the far side of the cone's apex, where its radii are negative
+    turned_step.py copies   the frustum, and two copies: moved by 20 along x; moved by 20 along y with its axis along x
     turned_step.py torus    a barrel, z from -3 to 3: the part of a torus of radii 4 and 9 within itself
 """
 
@@ -40,7 +41,8 @@ class File:
     def plane(self, z, up, edge):
         return self.face(self.add("PLANE('',#%d)", self.frame((0, 0, z), (0, 0, 1 if up else -1))), (edge, up))
 
-    def text(self, faces):
+    def text(self, faces, copies=()):
+        """Copies are frames, into which the solid at the origin is placed."""
         brep = self.add("MANIFOLD_SOLID_BREP('solid',#%d)",
                         self.add("CLOSED_SHELL('',(%s))", ",".join("#%d" % face for face in faces)))
         length = self.add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))")
@@ -56,26 +58,43 @@ class File:
         stage = self.add("PRODUCT_DEFINITION_CONTEXT('part definition',#%d,'design')", application)
         definition = self.add("PRODUCT_DEFINITION('design','',#%d,#%d)", formation, stage)
         self.add("SHAPE_DEFINITION_REPRESENTATION(#%d,#%d)", self.add("PRODUCT_DEFINITION_SHAPE('','',#%d)", definition), shape)
+        if copies:
+            self.assemble(copies, context, formation, stage, definition, shape)
         return ("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
                 "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;\nDATA;\n" + "\n".join(self.lines) + "\nENDSEC;\nEND-ISO-10303-21;\n")
 
 
-def turned(file, surface, seam, low, high):
+    def assemble(self, copies, context, formation, stage, part, shape):
+        whole = self.add("PRODUCT_DEFINITION('design','',#%d,#%d)", formation, stage)
+        home = self.frame((0, 0, 0))
+        frames = ",".join("#%d" % copy for copy in copies)
+        places = self.add("SHAPE_REPRESENTATION('',(%s),#%d)", frames, context)
+        self.add("SHAPE_DEFINITION_REPRESENTATION(#%d,#%d)", self.add("PRODUCT_DEFINITION_SHAPE('','',#%d)", whole), places)
+        for copy in copies:
+            use = self.add("NEXT_ASSEMBLY_USAGE_OCCURRENCE('%d','','',#%d,#%d,$)" % (copy, whole, part))
+            map_ = self.add("ITEM_DEFINED_TRANSFORMATION('','',#%d,#%d)", home, copy)
+            relation = self.add("(REPRESENTATION_RELATIONSHIP('','',#%d,#%d)REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#%d)"
+                                "SHAPE_REPRESENTATION_RELATIONSHIP())", shape, places, map_)
+            self.add("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#%d,#%d)", relation, self.add("PRODUCT_DEFINITION_SHAPE('','',#%d)", use))
+
+
+def turned(file, surface, seam, low, high, copies=()):
     """A solid between two circles, each of z and radius; `seam` is the curve between them at y = 0."""
     ends = [file.vertex((radius, 0, z)) for z, radius in (low, high)]
     rims = [file.circle(z, radius, end) for (z, radius), end in zip((low, high), ends)]
     edge = file.add("EDGE_CURVE('',#%d,#%d,#%d,.T.)", *ends, seam)
     side = file.face(surface, (rims[0], True), (edge, True), (rims[1], False), (edge, False))
-    return file.text([side, file.plane(low[0], False, rims[0]), file.plane(high[0], True, rims[1])])
+    return file.text([side, file.plane(low[0], False, rims[0]), file.plane(high[0], True, rims[1])], copies)
 
 
-def far_cone():
+def far_cone(copied=False):
     """The radius is 5 - z / 2; the cone is given by its circle at z = 14, where this is -2."""
     file = File()
     surface = file.add("CONICAL_SURFACE('',#%d,2.,%r)", file.frame((0, 0, 14)), math.atan(0.5))
     along = file.add("VECTOR('',#%d,1.)", file.triple("DIRECTION", (-3, 0, 6)))
     seam = file.add("LINE('',#%d,#%d)", file.triple("CARTESIAN_POINT", (5, 0, 0)), along)
-    return turned(file, surface, seam, (0, 5), (6, 2))
+    copies = [file.frame((0, 0, 0)), file.frame((20, 0, 0)), file.frame((0, 20, 0), (1, 0, 0), (0, 1, 0))] if copied else []
+    return turned(file, surface, seam, (0, 5), (6, 2), copies)
 
 
 def inner_torus(major=4, minor=9, half=3):
@@ -87,7 +106,7 @@ def inner_torus(major=4, minor=9, half=3):
     return turned(file, surface, seam, (-half, radius), (half, radius))
 
 
-KINDS = {"cone": far_cone, "torus": inner_torus}
+KINDS = {"cone": far_cone, "copies": lambda: far_cone(True), "torus": inner_torus}
 
 if __name__ == "__main__":
     sys.stdout.write(KINDS[sys.argv[1]]())
