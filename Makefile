@@ -65,12 +65,15 @@ LDLIBS_ALL := $(PKG_LIBS) -lm -lpthread $(SANITIZE) $(LDFLAGS)
 # There are hundreds of test programs: LLVM's linker takes a quarter of the time.
 CFLAGS_TEST := $(CFLAGS_ALL) $(TEST_OPT) $(if $(shell command -v ld.lld),-fuse-ld=lld)
 
-# The helper program links Open CASCADE, without the parts that draw.
+# The helper program links Open CASCADE, without the parts that draw. The modules, which it loads when they are needed, link the rest.
 OCCT_H     := $(wildcard /usr/include/opencascade/BRepAlgoAPI_Fuse.hxx)
 OCCT_LIBS  := $(patsubst %,-l%,TKSTEP TKSTEP209 TKSTEPAttr TKSTEPBase TKIGES TKXSBase TKOffset TKFillet TKBool TKBO TKPrim TKShHealing \
               TKTopAlgo TKBRep TKGeomAlgo TKGeomBase TKG3d TKG2d TKMath TKernel)
 BREP_OPT   ?= -O2
-BREP_SRC   := $(sort $(wildcard brep/*.cpp))
+BREP_MODULES := cag-brep-exchange cag-brep-operations
+BREP_EXCHANGE := brep/exchange.cpp brep/exchange_module.cpp
+BREP_OPERATIONS := brep/blends.cpp brep/offsets.cpp brep/operations.cpp brep/operations_module.cpp
+BREP_SRC   := $(filter-out $(BREP_EXCHANGE) $(BREP_OPERATIONS),$(sort $(wildcard brep/*.cpp)))
 
 BASE_SRC   := $(shell find base -name '*.c' | sort)
 LANG_SRC   := $(shell find lang -name '*.c' | sort)
@@ -101,7 +104,8 @@ PAGE     := $(sort $(wildcard web/dist/*.gz))
 .PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize test-programs-threads test-threads test-embree coverage mutate bench silhouettes format check-format check-layers analyze tidy install deb editors brep web check-web fonts playground screenshots vsix
 .SECONDARY:
 # The program with Clang is for tests of the C code, which need no helper.
-all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so $(if $(OCCT_H),$(if $(filter clang,$(CC)),,brep))
+HAS_BREP := $(if $(OCCT_H),$(if $(filter clang,$(CC)),,yes))
+all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so $(if $(HAS_BREP),brep)
 
 $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)
@@ -151,14 +155,25 @@ $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
 $(BUILD)/cag: $(CLI_OBJ) $(BUILD)/libcag.a
 	$Q$(CC) $^ -o $@ $(LDLIBS_ALL)
 
-brep: $(BUILD)/cag-brep
+brep: $(BUILD)/cag-brep $(patsubst %,$(BUILD)/%.so,$(BREP_MODULES))
 $(BUILD)/obj/brep/%.o: brep/%.cpp
 	@mkdir -p $(@D)
 	@echo "c++ $<"
 	$Q$(CXX) -std=c++17 $(BREP_OPT) -g -Wall -Wextra -Werror -MMD -MP -I. -isystem $(dir $(OCCT_H)) -DCAG_VERSION='"$(VERSION)"' $(SANITIZE) \
-	  $(CXXFLAGS) -c $< -o $@
+	  $(CXXFLAGS) -fPIC -c $< -o $@
+# The modules use functions of the program.
 $(BUILD)/cag-brep: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_SRC))
-	$Q$(CXX) $^ -o $@ -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
+	$Q$(CXX) $^ -o $@ -rdynamic -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
+$(BUILD)/cag-brep-exchange.so: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_EXCHANGE))
+$(BUILD)/cag-brep-operations.so: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_OPERATIONS))
+$(patsubst %,$(BUILD)/%.so,$(BREP_MODULES)):
+	$Q$(CXX) -shared $^ -o $@ -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
+
+# A test of a part of the program, which tests/brep/protocol.py runs.
+$(BUILD)/tests/brep/%: tests/brep/%.cpp $(patsubst %.cpp,$(BUILD)/obj/%.o,$(filter-out brep/main.cpp,$(BREP_SRC)))
+	@mkdir -p $(@D)
+	@echo "c++ $<"
+	$Q$(CXX) -std=c++17 $(BREP_OPT) -g -Wall -Wextra -Werror -I. -isystem $(dir $(OCCT_H)) $^ -o $@ -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
 
 # Writes the program's tables, as input for tools/*.sh.
 $(BUILD)/tools/tables: tools/tables.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
@@ -223,7 +238,7 @@ $(BUILD)/tests/fuzz/memory: tests/fuzz/memory.c $(BUILD)/libcag.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_TEST) $< $(BUILD)/libcag.a -o $@ $(WRAP) $(LDLIBS_ALL)
 
-test-programs: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man $(call UNIT,base) $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz $(BUILD)/tests/fuzz/memory
+test-programs: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man $(call UNIT,base) $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz $(BUILD)/tests/fuzz/memory $(if $(HAS_BREP),$(BUILD)/tests/brep/poles_test)
 test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh
 
@@ -353,7 +368,8 @@ install: all $(BUILD)/tools/tables $(BUILD)/tools/markdown_man
 	ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/$(LIBDIR)/libcag.so
 	install -m 644 include/cag.h $(DESTDIR)$(PREFIX)/include/cag.h
 	if [ -x $(BUILD)/cag-brep ]; then \
-	  install -d $(DESTDIR)$(PREFIX)/lib/cag && install -m 755 $(BUILD)/cag-brep $(DESTDIR)$(PREFIX)/lib/cag/cag-brep; fi
+	  install -d $(DESTDIR)$(PREFIX)/lib/cag && install -m 755 $(BUILD)/cag-brep $(DESTDIR)$(PREFIX)/lib/cag/cag-brep && \
+	  install -m 644 $(patsubst %,$(BUILD)/%.so,$(BREP_MODULES)) $(DESTDIR)$(PREFIX)/lib/cag; fi
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@LIBS@|$(strip $(PKG_LIBS))|' tools/libcag.pc.in \
 	  > $(DESTDIR)$(PREFIX)/$(LIBDIR)/pkgconfig/libcag.pc
 	$(BUILD)/tools/tables > $(BUILD)/tables.txt

@@ -8,6 +8,7 @@
 
 #include "brep/curves.hpp"
 #include "brep/measure.hpp"
+#include "brep/poles.hpp"
 #include "brep/solids.hpp"
 
 #include <BRepClass3d.hxx>
@@ -151,6 +152,7 @@ bool complete_edges(const TopoDS_Solid &solid) {
   BRep_Builder builder;
   for (const TopoDS_Shape &shape : boundary_parts(solid, TopAbs_FACE)) {
     const TopoDS_Face face = TopoDS::Face(shape.Oriented(TopAbs_FORWARD));
+    incomplete = straighten_meridians(face) || incomplete;
     for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
       const TopoDS_Edge edge = TopoDS::Edge(it.Current());
       double first, last;
@@ -278,8 +280,8 @@ static void write_face(Writer &out, const TopoDS_Face &oriented, const Numbering
   out.u32(reversed != written.mirrored);
   out.f64(written.mirrored ? -bounds.u1 : bounds.u0);
   out.f64(written.mirrored ? -bounds.u0 : bounds.u1);
-  out.f64(bounds.v0);
-  out.f64(bounds.v1);
+  out.f64(bounds.v0 + written.shift);
+  out.f64(bounds.v1 + written.shift);
   out.f64(BRep_Tool::Tolerance(face) + written.error);
   std::vector<std::vector<Use>> loops;
   for (const TopoDS_Wire &wire : face_loops(face)) {
@@ -295,7 +297,7 @@ static void write_face(Writer &out, const TopoDS_Face &oriented, const Numbering
     for (const Use &use : uses) {
       out.u32(static_cast<uint32_t>(numbering.edges.FindIndex(use.edge) - 1));
       out.u32(use.reversed != reversed);
-      write_trace(out, use.trace, use.first, use.last, written.mirrored);
+      write_trace(out, use.trace, use.first, use.last, written);
     }
   }
 }

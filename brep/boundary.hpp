@@ -19,7 +19,7 @@ struct Numbering {
 Numbering number_boundary(const TopoDS_Solid &solid);
 
 // Completes what the boundary has to tell of all edges: curves in space and in the parameters of
-// their faces, at the same parameters. Returns whether some were missing.
+// their faces, at the same parameters. Returns whether some were missing or wrong.
 bool complete_edges(const TopoDS_Solid &solid);
 
 void write_boundary(Writer &out, const TopoDS_Solid &solid, const Measures &measures);

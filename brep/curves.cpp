@@ -229,12 +229,13 @@ double write_curve(Writer &out, const Ref<Geom_Curve> &curve, double first, doub
 }
 
 void write_trace(Writer &out, const Ref<Geom2d_Curve> &trace, double first, double last,
-                 bool mirrored) {
+                 const WrittenSurface &on) {
   Ref<Geom2d_Curve> written = trace;
-  if (mirrored) {
-    gp_Trsf2d mirror;
-    mirror.SetMirror(gp_Ax2d(gp_Pnt2d(), gp_Dir2d(0, 1)));
-    written = Ref<Geom2d_Curve>::DownCast(trace->Transformed(mirror));
+  if (on.mirrored || on.shift != 0) {
+    gp_Trsf2d map;
+    if (on.mirrored) map.SetMirror(gp_Ax2d(gp_Pnt2d(), gp_Dir2d(0, 1)));
+    map.SetTranslationPart(gp_Vec2d(0, on.shift));
+    written = Ref<Geom2d_Curve>::DownCast(trace->Transformed(map));
   }
   write_any<InParameters>(out, written, first, last, 1e-9);
 }
@@ -352,6 +353,54 @@ static double write_profile(Writer &out, const Ref<Geom_Curve> &curve, double fi
   return error;
 }
 
+// The frame turned by half a turn about its z axis, so that radii change their signs.
+static gp_Ax3 turned_frame(gp_Ax3 frame) {
+  frame.XReverse();
+  frame.YReverse();
+  return frame;
+}
+
+// Radii are positive. On the far side of the apex, where those of the given cone are negative, v is
+// measured from the middle of the face.
+static WrittenSurface write_cone(Writer &out, const Ref<Geom_ConicalSurface> &cone,
+                                 const Bounds &bounds) {
+  gp_Ax3 frame = cone->Position();
+  double radius = cone->RefRadius(), angle = cone->SemiAngle();
+  const double middle = (bounds.v0 + bounds.v1) / 2, at_middle = radius + middle * std::sin(angle);
+  const bool far = at_middle < 0;
+  if (far) {
+    frame = turned_frame(frame);
+    frame.SetLocation(
+        frame.Location().Translated(gp_Vec(frame.Direction()) * middle * std::cos(angle)));
+    radius = -at_middle;
+    angle = -angle;
+  }
+  const bool mirrored = write_frame(out, CAG_BREP_CONICAL, frame);
+  out.f64(radius);
+  out.f64(angle);
+  return {mirrored, 0, far ? -middle : 0};
+}
+
+// The part of a torus within itself, where distances from the axis are negative, is a revolved arc.
+static WrittenSurface write_torus(Writer &out, const Ref<Geom_ToroidalSurface> &torus,
+                                  const Bounds &bounds, double tolerance) {
+  const gp_Ax3 frame = torus->Position();
+  const double major = torus->MajorRadius(), minor = torus->MinorRadius();
+  if (major + minor * std::cos((bounds.v0 + bounds.v1) / 2) >= 0) {
+    const bool mirrored = write_frame(out, CAG_BREP_TOROIDAL, frame);
+    out.f64(major);
+    out.f64(minor);
+    return {mirrored, 0};
+  }
+  const gp_Dir x = frame.XDirection(), z = frame.Direction();
+  const Ref<Geom_Curve> arc = new Geom_Circle(
+      gp_Ax2(frame.Location().Translated(gp_Vec(x) * major), x.Crossed(z), x), minor);
+  out.u32(CAG_BREP_REVOLVED);
+  out.xyz(frame.Location().XYZ());
+  out.xyz(x.Crossed(frame.YDirection()).XYZ());
+  return {false, write_profile(out, arc, bounds.v0, bounds.v1, tolerance)};
+}
+
 WrittenSurface write_surface(Writer &out, const Ref<Geom_Surface> &given, const Bounds &bounds,
                              double tolerance) {
   Ref<Geom_Surface> surface = given;
@@ -375,23 +424,15 @@ WrittenSurface write_surface(Writer &out, const Ref<Geom_Surface> &given, const 
     out.f64(cylinder->Radius());
     return {mirrored, 0};
   }
-  if (const auto cone = Ref<Geom_ConicalSurface>::DownCast(surface)) {
-    const bool mirrored = write_frame(out, CAG_BREP_CONICAL, cone->Position());
-    out.f64(cone->RefRadius());
-    out.f64(cone->SemiAngle());
-    return {mirrored, 0};
-  }
+  if (const auto cone = Ref<Geom_ConicalSurface>::DownCast(surface))
+    return write_cone(out, cone, bounds);
   if (const auto sphere = Ref<Geom_SphericalSurface>::DownCast(surface)) {
     const bool mirrored = write_frame(out, CAG_BREP_SPHERICAL, sphere->Position());
     out.f64(sphere->Radius());
     return {mirrored, 0};
   }
-  if (const auto torus = Ref<Geom_ToroidalSurface>::DownCast(surface)) {
-    const bool mirrored = write_frame(out, CAG_BREP_TOROIDAL, torus->Position());
-    out.f64(torus->MajorRadius());
-    out.f64(torus->MinorRadius());
-    return {mirrored, 0};
-  }
+  if (const auto torus = Ref<Geom_ToroidalSurface>::DownCast(surface))
+    return write_torus(out, torus, bounds, tolerance);
   if (const auto spline = Ref<Geom_BSplineSurface>::DownCast(surface)) {
     write_spline_surface(out, clamp_surface(spline, bounds));
     return {false, 0};

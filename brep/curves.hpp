@@ -21,16 +21,18 @@ struct Bounds {
 double write_curve(Writer &out, const Ref<Geom_Curve> &curve, double first, double last,
                    double tolerance);
 
-// Writes a curve in the parameters of a surface. `mirrored` replaces u by -u.
-void write_trace(Writer &out, const Ref<Geom2d_Curve> &trace, double first, double last,
-                 bool mirrored);
-
+// A surface that was written, and its parameters from those of the one that was given.
 struct WrittenSurface {
-  bool mirrored; // u of the surface that was written is -u of the one that was given
-  double error;  // how far apart they are
+  bool mirrored;    // its u is -u
+  double error;     // how far apart the surfaces are
+  double shift = 0; // its v is v + shift
 };
 WrittenSurface write_surface(Writer &out, const Ref<Geom_Surface> &surface, const Bounds &bounds,
                              double tolerance);
+
+// Writes a curve in the parameters of a surface, as one in those of the surface that was written.
+void write_trace(Writer &out, const Ref<Geom2d_Curve> &trace, double first, double last,
+                 const WrittenSurface &on);
 
 } // namespace brep
 

@@ -161,6 +161,12 @@ static double linear(double channel) {
   return channel <= 0.04045 ? channel / 12.92 : std::pow((channel + 0.055) / 1.055, 2.4);
 }
 
+// The parts that were made of a solid, and where it was placed.
+struct Placed {
+  size_t first, count;
+  gp_Trsf map;
+};
+
 // The shapes of a file, on the way to their solids: each part has the name and the color of its
 // nearest ancestor that has one.
 struct Walk {
@@ -169,7 +175,9 @@ struct Walk {
   bool assembly; // the file has several products
   std::vector<Part> parts;
   TopoDS_Shape loose; // faces and shells outside of solids
+  std::map<std::pair<const TopoDS_TShape *, TopAbs_Orientation>, Placed> placed;
 
+  void add_solid(const TopoDS_Shape &shape, const Part &like);
   void visit(const TopoDS_Shape &shape, const std::string &outer_product, const Color *color,
              bool outer_alone);
 };
@@ -218,6 +226,32 @@ static Solids placed_solids(const TopoDS_Shape &shape, const std::string &name) 
   return solids;
 }
 
+static bool is_rigid(const gp_Trsf &map) {
+  return !map.IsNegative() && std::abs(map.ScaleFactor() - 1) < 1e-12;
+}
+
+// Adds the parts of a solid, with a name and a color. Further solids of one shape become copies.
+void Walk::add_solid(const TopoDS_Shape &shape, const Part &like) {
+  const gp_Trsf map = shape.Location().Transformation();
+  const auto found = placed.find({shape.TShape().get(), shape.Orientation()});
+  Part part = like;
+  if (found != placed.end() && is_rigid(map)) {
+    const Placed &before = found->second;
+    part.placement = map.Multiplied(before.map.Inverted());
+    for (part.original = before.first; part.original < before.first + before.count; ++part.original)
+      parts.push_back(part);
+    return;
+  }
+  const size_t first = parts.size();
+  for (const TopoDS_Solid &solid : placed_solids(shape, like.name)) {
+    part.solid = solid;
+    parts.push_back(part);
+  }
+  if (is_rigid(map))
+    placed.insert(
+        {{shape.TShape().get(), shape.Orientation()}, {first, parts.size() - first, map}});
+}
+
 void Walk::visit(const TopoDS_Shape &shape, const std::string &outer_product, const Color *color,
                  bool outer_alone) {
   if (shape.IsNull()) return;
@@ -237,13 +271,11 @@ void Walk::visit(const TopoDS_Shape &shape, const std::string &outer_product, co
       const Color *of_faces = face_color(shape, colors);
       if (of_faces) color = of_faces;
     }
-    for (const TopoDS_Solid &solid : placed_solids(shape, name)) {
-      Part part = {solid, name};
-      part.has_color = color != nullptr;
-      for (int i = 0; color && i < 3; ++i) part.color[i] = linear(color->channels[i]);
-      parts.push_back(part);
-    }
-    return;
+    Part like;
+    like.name = name;
+    like.has_color = color != nullptr;
+    for (int i = 0; color && i < 3; ++i) like.color[i] = linear(color->channels[i]);
+    return add_solid(shape, like);
   }
   if (shape.ShapeType() > TopAbs_SOLID) {
     if (shape.ShapeType() > TopAbs_FACE) return;
@@ -301,7 +333,8 @@ static void add_loose(Walk &walk, double gap) {
   }
   if (!any) return;
   for (const TopoDS_Solid &solid : solids_of_shells(closed)) {
-    Part part = {solid};
+    Part part;
+    part.solid = solid;
     const Color *color = face_color(solid, colors);
     part.has_color = color != nullptr;
     for (int i = 0; color && i < 3; ++i) part.color[i] = linear(color->channels[i]);
@@ -417,7 +450,7 @@ std::vector<Part> read_step(Reader &in) {
     }
   }
   const Colors colors = step_colors(session, process);
-  Walk walk = {solid_names, product_names, colors, products.size() > 1, {}, {}};
+  Walk walk = {solid_names, product_names, colors, products.size() > 1, {}, {}, {}};
   for (int i = 1; i <= reader.NbShapes(); ++i) { walk.visit(reader.Shape(i), "", nullptr, false); }
   return finish_walk(walk, 1e-6);
 }
@@ -464,7 +497,7 @@ std::vector<Part> read_iges(Reader &in) {
     if (!name.empty()) names.insert({shape.TShape().get(), name});
     if (has_color) colors.insert({shape.TShape().get(), color});
   }
-  Walk walk = {names, products, colors, false, {}, {}};
+  Walk walk = {names, products, colors, false, {}, {}, {}};
   for (int i = 1; i <= reader.NbShapes(); ++i) walk.visit(reader.Shape(i), "", nullptr, false);
   return finish_walk(walk, IGES_GAP);
 }

@@ -4,10 +4,10 @@
 // Each request runs in a child process, so that this program survives crashes of the kernel.
 
 #include "brep/attempt.hpp"
+#include "brep/booleans.hpp"
 #include "brep/boundary.hpp"
-#include "brep/exchange.hpp"
 #include "brep/isolated.hpp"
-#include "brep/operations.hpp"
+#include "brep/module.hpp"
 #include "brep/shapes.hpp"
 
 #include <Message.hxx>
@@ -45,7 +45,7 @@ static std::string make_failure(const Failure &failure) {
   return make_message(CAG_BREP_FAILURE, failure_bytes(failure));
 }
 
-static std::string make_result(std::vector<Part> parts) {
+static std::string make_result(const std::vector<Part> &parts) {
   if (parts.empty()) throw Failure{CAG_BREP_FAIL_EMPTY, "nothing is left"};
   Writer out;
   out.u32(static_cast<uint32_t>(parts.size()));
@@ -54,6 +54,13 @@ static std::string make_result(std::vector<Part> parts) {
     out.u32(part.has_color);
     if (part.has_color)
       for (const double channel : part.color) out.f64(channel);
+    if (part.solid.IsNull()) {
+      out.u32(static_cast<uint32_t>(part.original));
+      for (int i = 1; i <= 3; ++i)
+        for (int k = 1; k <= 4; ++k) out.f64(part.placement.Value(i, k));
+      continue;
+    }
+    out.u32(CAG_BREP_NONE);
     const bool changed = complete_edges(part.solid);
     out.text(write_body(part.solid));
     write_boundary(out, part.solid, changed ? measure(part.solid) : measures_of(part.solid));
@@ -61,47 +68,24 @@ static std::string make_result(std::vector<Part> parts) {
   return make_message(CAG_BREP_RESULT, out.bytes);
 }
 
-static void add_parts(std::vector<Part> &parts, const Solids &solids, const char *name) {
-  for (const TopoDS_Solid &solid : solids) {
-    const std::string faults = faults_of(solid);
-    if (!faults.empty()) throw Failure{CAG_BREP_FAIL_CHECK, faults};
-    parts.push_back({solid, name});
-  }
-}
-
-static std::string make_result(const Solids &solids) {
-  std::vector<Part> parts;
-  add_parts(parts, solids, "");
-  return make_result(parts);
-}
-
-// The names tell the parts inside of the tool from those outside.
-static std::string make_split_result(const std::vector<Solids> &sides) {
-  std::vector<Part> parts;
-  add_parts(parts, sides[0], "inside");
-  add_parts(parts, sides[1], "outside");
-  return make_result(parts);
+// The names of the parts of a split tell those inside of the tool from those outside.
+static void answer_here(uint64_t type, Reader &in, std::vector<Part> &parts) {
+  if (type != CAG_BREP_EVALUATE && type != CAG_BREP_SPLIT)
+    throw Failure{CAG_BREP_FAIL_INPUT, "unknown request " + std::to_string(type)};
+  const Solids solids = read_solids(in), tool = type == CAG_BREP_SPLIT ? read_solids(in) : Solids();
+  in.finish();
+  if (type == CAG_BREP_EVALUATE) return add_valid_parts(parts, solids, "");
+  add_valid_parts(parts, combine(BOPAlgo_COMMON, {solids, tool}), "inside");
+  add_valid_parts(parts, combine(BOPAlgo_CUT, {solids, tool}), "outside");
 }
 
 static std::string answer(uint64_t type, const std::string &fields) {
   Reader in(fields.data(), fields.size());
-  switch (type) {
-  case CAG_BREP_EVALUATE: {
-    const Solids solids = read_solids(in);
-    in.finish();
-    return make_result(solids);
-  }
-  case CAG_BREP_FILLET: return make_result(fillet(in));
-  case CAG_BREP_CHAMFER: return make_result(chamfer(in));
-  case CAG_BREP_SHELL: return make_result(shell(in));
-  case CAG_BREP_OFFSET: return make_result(offset(in));
-  case CAG_BREP_DRAFT: return make_result(draft(in));
-  case CAG_BREP_SPLIT: return make_split_result(split(in));
-  case CAG_BREP_IMPRINT: return make_result(imprint(in));
-  case CAG_BREP_READ_STEP: return make_result(read_step(in));
-  case CAG_BREP_READ_IGES: return make_result(read_iges(in));
-  default: throw Failure{CAG_BREP_FAIL_INPUT, "unknown request " + std::to_string(type)};
-  }
+  std::vector<Part> parts;
+  const ModuleAnswer by_module = module_answer(type);
+  if (by_module) by_module(type, in, parts);
+  else answer_here(type, in, parts);
+  return make_result(parts);
 }
 
 static bool is_file_request(uint64_t type) {
@@ -122,6 +106,14 @@ static std::string answer_or_fail(uint64_t type, const std::string &fields) {
   } catch (const std::exception &failure) {
     return make_failure({CAG_BREP_FAIL_METHOD, failure.what()});
   }
+}
+
+// Loads what a request needs before its process starts, so that later requests have it. A failure
+// comes again in that process, which answers with it.
+static void load_module(uint64_t type) {
+  try {
+    module_answer(type);
+  } catch (const Failure &) {}
 }
 
 static bool write_all(int file, const std::string &bytes) {
@@ -199,6 +191,7 @@ static int serve() {
     } else {
       bytes.clear();
       if (!read_bytes(header.size, &bytes)) return 0;
+      load_module(header.type);
       if (!run_isolated([&] { return answer_or_fail(header.type, bytes); }, 0, replies, reply, why))
         reply = make_failure(is_file_request(header.type)
                                  ? Failure{CAG_BREP_FAIL_FILE, "the file is damaged: " + why}

@@ -1,9 +1,8 @@
-// Drafts, splits, and imprints.
+// Drafts and imprints.
 
 #include "brep/operations.hpp"
 
 #include "brep/attempt.hpp"
-#include "brep/booleans.hpp"
 #include "brep/boundary.hpp"
 #include "brep/shapes.hpp"
 #include "brep/sides.hpp"
@@ -86,14 +85,6 @@ Solids draft(Reader &in) {
   if (faces.empty() || angle == 0) return {solid};
   return attempt_or_fail(
       [&] { return draft_once(solid, faces, gp_Dir(pull), angle, gp_Pln(point, gp_Dir(pull))); });
-}
-
-// ---- splits ----
-
-std::vector<Solids> split(Reader &in) {
-  const Solids solids = read_solids(in), tool = read_solids(in);
-  in.finish();
-  return {combine(BOPAlgo_COMMON, {solids, tool}), combine(BOPAlgo_CUT, {solids, tool})};
 }
 
 // ---- imprints ----

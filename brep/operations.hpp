@@ -1,4 +1,4 @@
-// Requests that change a solid: fillets, chamfers, shells, offsets, drafts, splits, and imprints.
+// Requests that change a solid: fillets, chamfers, shells, offsets, drafts, and imprints.
 
 #ifndef CAG_BREP_OPERATIONS_HPP
 #define CAG_BREP_OPERATIONS_HPP
@@ -14,8 +14,6 @@ Solids chamfer(Reader &in);
 Solids shell(Reader &in);
 Solids offset(Reader &in);
 Solids draft(Reader &in);
-// The parts inside of the tool, and those outside.
-std::vector<Solids> split(Reader &in);
 Solids imprint(Reader &in);
 
 } // namespace brep

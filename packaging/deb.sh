@@ -38,7 +38,7 @@ take libcag-dev "lib/$triplet/libcag.so" "lib/$triplet/libcag.a" "lib/$triplet/p
 packages='cag libcag0 libcag-dev'
 if [ -e "$all/usr/lib/cag/cag-brep" ]; then
   packages="$packages cag-brep"
-  take cag-brep lib/cag/cag-brep
+  take cag-brep lib/cag/cag-brep lib/cag/cag-brep-exchange.so lib/cag/cag-brep-operations.so
 fi
 take cag bin share
 find "$all" ! -type d > "$out/work/left"
@@ -51,7 +51,7 @@ find "$share/man" -type f -exec gzip -9n {} +
 strip --strip-unneeded --remove-section=.comment --remove-section=.note "$out/work/cag/usr/bin/cag" "$out/work/libcag0/usr/lib/$triplet/libcag.so.$VERSION"
 chmod 644 "$out/work/libcag0/usr/lib/$triplet/libcag.so.$VERSION"
 strip --strip-debug --enable-deterministic-archives "$out/work/libcag-dev/usr/lib/$triplet/libcag.a"
-[ ! -d "$out/work/cag-brep" ] || strip --strip-unneeded --remove-section=.comment --remove-section=.note "$out/work/cag-brep/usr/lib/cag/cag-brep"
+[ ! -d "$out/work/cag-brep" ] || strip --strip-unneeded --remove-section=.comment --remove-section=.note "$out/work/cag-brep/usr/lib/cag/"cag-brep*
 for package in $packages; do
   documents=$out/work/$package/usr/share/doc/$package
   mkdir -p "$documents"
@@ -64,7 +64,7 @@ done
   printf 'Source: cag\n\n'
   cat "$here/control"
 } > "$out/work/debian/control"
-libraries() { (cd "$out/work" && dpkg-shlibdeps -O "$1" 2> shlibdeps.log | sed -n 's/^shlibs:Depends=//p') || { cat "$out/work/shlibdeps.log" >&2; exit 1; }; }
+libraries() { (cd "$out/work" && dpkg-shlibdeps -O "$@" 2> shlibdeps.log | sed -n 's/^shlibs:Depends=//p') || { cat "$out/work/shlibdeps.log" >&2; exit 1; }; }
 developers=$(sed -n '/^NEEDS/,/[^\\]$/p' Makefile | tr ' ' '\n' | sed -n 's/^[^:]*:\(lib.*-dev\|[a-z0-9]*-dev\)$/\1/p' | sort | sed -n 'H; ${x; s/^\n//; s/\n/, /g; p}')
 
 # write_control PACKAGE LIBRARIES: its paragraph of packaging/control with what is known now.
@@ -85,7 +85,7 @@ write_control() {
 write_control cag "$(libraries "$out/work/cag/usr/bin/cag")"
 write_control libcag0 "$(libraries "$out/work/libcag0/usr/lib/$triplet/libcag.so.$VERSION")"
 write_control libcag-dev ''
-[ ! -d "$out/work/cag-brep" ] || write_control cag-brep "$(libraries "$out/work/cag-brep/usr/lib/cag/cag-brep")"
+[ ! -d "$out/work/cag-brep" ] || write_control cag-brep "$(libraries "$out/work/cag-brep/usr/lib/cag/"cag-brep*)"
 echo "libcag 0 libcag0 (>= $VERSION)" > "$out/work/libcag0/DEBIAN/shlibs"
 echo 'activate-noawait ldconfig' > "$out/work/libcag0/DEBIAN/triggers"
 

@@ -203,7 +203,7 @@ static void release_boundaries(void *what) {
 static bool list_of_parts(CagCall *call, CagBoundaries *parts, CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < parts->count; i++) {
-    CagBoundaries one = {cag_calloc(1, sizeof *one.items), 1};
+    CagBoundaries one = {.items = cag_calloc(1, sizeof *one.items), .count = 1};
     CagValue solid;
     if (!one.items) return cag_geometry_ok(call, cag_fail_memory(call->err));
     one.items[0] = parts->items[i];

@@ -198,7 +198,7 @@ CagStatus cag_exact_parts_take(CagExactParts *p, CagBoundaries *made) {
     return cag_fail_memory(p->call->err);
   }
   memcpy(items + all->count, made->items, made->count * sizeof *items);
-  *all = (CagBoundaries){items, all->count + made->count};
+  *all = (CagBoundaries){.items = items, .count = all->count + made->count};
   cag_free(made->items);
   *made = (CagBoundaries){0};
   return CAG_OK;

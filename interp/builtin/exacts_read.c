@@ -24,38 +24,54 @@ static void name_shape(CagVm *vm, CagValue shape, const char *name, bool has_col
   s->material = CAG_AS_RECORD(cag_record_new(vm, COLOR, &value, 1));
 }
 
-// The solid of one boundary, whose contents are taken, with its name and color.
-static bool solid_of(CagCall *call, CagBoundary *from, size_t number, const char *path,
-                     CagValue *result) {
-  CagBoundaries one = {cag_calloc(1, sizeof *one.items), 1};
-  CagSolid *s = NULL;
+// The solid of one boundary, whose contents are taken.
+static bool solid_of_boundary(CagCall *call, CagBoundary *from, size_t number, const char *path,
+                              CagSolid **out) {
+  CagBoundaries one = {.items = cag_calloc(1, sizeof *one.items), .count = 1};
   if (!one.items) return cag_geometry_ok(call, cag_fail_memory(call->err));
-  const bool has_color = from->has_color;
-  char *name = from->name;
-  double color[3];
-  memcpy(color, from->color, sizeof color);
   one.items[0] = *from;
-  one.items[0].name = NULL;
-  *from = (CagBoundary){.name = name};
-  const CagStatus status = cag_exacts_checked(&one, &s, call->err);
+  *from = (CagBoundary){0};
+  const CagStatus status = cag_exacts_checked(&one, out, call->err);
   if (status && call->err->id == CAG_ERR_no_boundary) {
     char why[sizeof call->err->message];
     memcpy(why, call->err->message, sizeof why);
     return cag_fail_call(call, 0, CAG_ERR_exact_file, "cannot use solid %zu of `%s`: %s", number,
                          path, why);
   }
-  if (!cag_solid_result(call, status, &s, result)) return false;
+  return cag_geometry_ok(call, status);
+}
+
+// A solid with its name and color. Copies share the boundary of their original and its measures.
+static bool solid_of(CagCall *call, CagBoundaries *all, size_t i, CagSolid **solids,
+                     const char *path, CagValue *result) {
+  CagBoundary *from = &all->items[i];
+  const bool has_color = from->has_color;
+  double color[3];
+  memcpy(color, from->color, sizeof color);
+  char *name = from->name;
+  from->name = NULL;
+  cag_hold(call, name);
+  const size_t original = all->copies ? all->copies[i].original : CAG_NOT_COPIED;
+  if (original == CAG_NOT_COPIED) {
+    if (!solid_of_boundary(call, from, i + 1, path, &solids[i])) return false;
+  } else if (!cag_geometry_ok(call, cag_solid_transform(solids[original], &all->copies[i].placement,
+                                                        &solids[i], call->err)))
+    return false;
+  CagSolid *s = cag_solid_retain(solids[i]);
+  if (!cag_solid_result(call, CAG_OK, &s, result)) return false;
   name_shape(call->vm, *result, name, has_color, color);
+  cag_release_held(call, name);
   return true;
 }
 
 // One solid as such, several as a group.
 static bool solids_of(CagCall *call, CagBoundaries *all, const char *path, CagValue *result) {
-  if (all->count == 1) return solid_of(call, &all->items[0], 1, path, result);
+  CagSolid **own = cag_hold_solid_array(call, all->count);
+  if (all->count == 1) return solid_of(call, all, 0, own, path, result);
   CagBuilder *solids = cag_builder_new(call->vm);
   for (size_t i = 0; i < all->count; i++) {
     CagValue one;
-    if (!cag_keep_going(call->vm) || !solid_of(call, &all->items[i], i + 1, path, &one) ||
+    if (!cag_keep_going(call->vm) || !solid_of(call, all, i, own, path, &one) ||
         !cag_builder_add(call->vm, solids, one))
       return false;
   }

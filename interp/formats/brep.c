@@ -323,7 +323,7 @@ static CagStatus copy_known(const CagSolid *s, CagBoundaries *out, CagError *err
   size_t n = 0;
   const CagBoundary *parts = cag_solid_boundaries(s, &n);
   CagStatus status = CAG_OK;
-  *out = (CagBoundaries){cag_calloc(n + 1, sizeof *out->items), 0};
+  *out = (CagBoundaries){.items = cag_calloc(n + 1, sizeof *out->items)};
   if (!out->items) return cag_fail_memory(err);
   while (!status && out->count < n) {
     status = cag_boundary_moved(&parts[out->count], &s->placement, &out->items[out->count], err);

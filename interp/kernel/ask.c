@@ -334,21 +334,43 @@ static bool closes(const CagBoundary *b) {
   return ok;
 }
 
+static CagStatus fail_result(CagError *err) {
+  return cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
+                  "the answer of cag-brep is not a boundary");
+}
+
+// Whether the solid that was read last is a boundary that closes, or a copy of one.
+static CagStatus check_result(CagBoundaries *all, CagError *err) {
+  const size_t last = all->count - 1, original = all->copies[last].original;
+  if (original == CAG_NOT_COPIED)
+    return closes(&all->items[last]) ? CAG_OK
+                                     : cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
+                                                "the faces that the kernel found do not close");
+  if (original >= last || all->copies[original].original != CAG_NOT_COPIED) return fail_result(err);
+  all->items[last].volume = all->items[original].volume;
+  return CAG_OK;
+}
+
 static CagStatus read_result(const Answer *a, CagBoundaries *out, CagError *err) {
   CagFieldReader r = reader_of(a);
   const size_t n = cag_take_count(&r, 1);
-  *out = (CagBoundaries){cag_calloc(n + 1, sizeof *out->items), 0};
-  CagStatus status = out->items ? CAG_OK : cag_fail_memory(err);
+  *out = (CagBoundaries){cag_calloc(n + 1, sizeof *out->items), 0,
+                         cag_calloc(n + 1, sizeof *out->copies)};
+  CagStatus status = out->items && out->copies ? CAG_OK : cag_fail_memory(err);
+  bool copied = false;
   while (!status && out->count < n) {
-    status = cag_read_boundary(&r, &out->items[out->count], err);
-    if (!status && !closes(&out->items[out->count++]))
-      status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_boundary, "", -1,
-                        "the faces that the kernel found do not close");
+    status = cag_read_part(&r, &out->items[out->count], &out->copies[out->count], err);
+    if (status) break;
+    copied = copied || out->copies[out->count].original != CAG_NOT_COPIED;
+    out->count++;
+    status = check_result(out, err);
     if (!status) status = cag_stop_check(err);
   }
-  if (!status && (n == 0 || r.at != r.end))
-    status = cag_fail(err, CAG_E_RENDERER, CAG_ERR_kernel_answer, "", -1,
-                      "the answer of cag-brep is not a boundary");
+  if (!copied) {
+    cag_free(out->copies);
+    out->copies = NULL;
+  }
+  if (!status && (n == 0 || r.at != r.end)) status = fail_result(err);
   if (status) cag_boundaries_free(out);
   return status;
 }

@@ -24,10 +24,19 @@ void cag_kernel_free(CagKernel *k);
 // offset, or draft. 0: as long as the others.
 void cag_kernel_set_patience(CagKernel *k, double seconds);
 
-// Boundaries of the connected parts of a solid.
+// Where a part is that has the shape of an earlier one.
+#define CAG_NOT_COPIED SIZE_MAX
+typedef struct CagBoundaryCopy {
+  size_t original;        // its index, or CAG_NOT_COPIED
+  CagTransform placement; // rigid: maps the original to the copy
+} CagBoundaryCopy;
+
+// Boundaries of the connected parts of a solid. Copies, which only files have, have a name, a color,
+// and a volume, but no faces.
 typedef struct CagBoundaries {
   CagBoundary *items;
   size_t count;
+  CagBoundaryCopy *copies; // as many as items; NULL: none is a copy
 } CagBoundaries;
 void cag_boundaries_free(CagBoundaries *b);
 

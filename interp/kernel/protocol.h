@@ -27,14 +27,17 @@
 #define CAG_INTERP_KERNEL_PROTOCOL_H
 
 // Changes with every change of this file. A helper with another number is refused.
-#define CAG_BREP_PROTOCOL 2
+#define CAG_BREP_PROTOCOL 3
 
 typedef enum CagBrepMessage {
   // From the helper.
-  CAG_BREP_HELLO = 1,   // u32 CAG_BREP_PROTOCOL, text version of cag-brep, text version of the
-                        // kernel
-  CAG_BREP_RESULT = 2,  // u32 solids, then per solid: text name, u32 has color, if so 3 f64 (linear
-                        // red, green, blue); bytes body: the kernel's own form; boundary
+  CAG_BREP_HELLO = 1,  // u32 CAG_BREP_PROTOCOL, text version of cag-brep, text version of the
+                       // kernel
+  CAG_BREP_RESULT = 2, // u32 solids, then per solid: text name, u32 has color, if so 3 f64 (linear
+                       // red, green, blue), u32 original: the index of an earlier solid, of which
+                       // this one is a copy, or CAG_BREP_NONE. Of a copy, the placement then maps
+                       // the original to it, rigidly; of others, bytes body: the kernel's own form;
+                       // boundary
   CAG_BREP_FAILURE = 3, // u32 reason (CagBrepFailure), text what failed, for people; u32 edge: its
                         // index in the boundary, or CAG_BREP_NONE; f64 limit: the largest radius or
                         // distance that was found to work there, 0 if none is known

@@ -375,26 +375,44 @@ static CagStatus read_shells(CagFieldReader *r, CagBoundary *b, CagError *err) {
   return checked(r, err);
 }
 
-CagStatus cag_read_boundary(CagFieldReader *r, CagBoundary *out, CagError *err) {
-  CagBoundary b = {0};
+static CagTransform take_placement(CagFieldReader *r) {
+  CagTransform t = cag_transform_identity();
+  t.planar = false;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 4; j++) t.m[i][j] = cag_take_f64(r);
+  return t;
+}
+
+static CagStatus read_boundary(CagFieldReader *r, CagBoundary *b, CagError *err) {
   Ranges ranges = NULL;
+  const unsigned char *body = cag_take_bytes(r, &b->body_length);
+  b->volume = cag_take_f64(r);
+  b->area = cag_take_f64(r);
+  b->centroid = cag_take_vec(r);
+  CagStatus status = checked(r, err);
+  if (!status && !(b->body = cag_malloc(b->body_length + 1))) status = cag_fail_memory(err);
+  if (!status) memcpy(b->body, body, b->body_length);
+  if (!status) status = read_corners(r, b, err);
+  if (!status) status = read_edges(r, b, &ranges, err);
+  if (!status) status = read_faces(r, b, ranges, err);
+  if (!status) status = read_shells(r, b, err);
+  cag_free(ranges);
+  return status;
+}
+
+CagStatus cag_read_part(CagFieldReader *r, CagBoundary *out, CagBoundaryCopy *copy, CagError *err) {
+  CagBoundary b = {0};
   size_t length;
   const unsigned char *name = cag_take_bytes(r, &length);
   b.has_color = cag_take_u32(r) != 0;
   for (int k = 0; b.has_color && k < 3; k++) b.color[k] = cag_take_f64(r);
-  const unsigned char *body = cag_take_bytes(r, &b.body_length);
-  b.volume = cag_take_f64(r);
-  b.area = cag_take_f64(r);
-  b.centroid = cag_take_vec(r);
+  const uint32_t original = cag_take_u32(r);
+  const bool copied = original != CAG_BREP_NONE;
+  *copy = (CagBoundaryCopy){copied ? original : CAG_NOT_COPIED, cag_transform_identity()};
+  if (copied) copy->placement = take_placement(r);
   CagStatus status = checked(r, err);
   if (!status && !(b.name = cag_strndup((const char *)name, length))) status = cag_fail_memory(err);
-  if (!status && !(b.body = cag_malloc(b.body_length + 1))) status = cag_fail_memory(err);
-  if (!status) memcpy(b.body, body, b.body_length);
-  if (!status) status = read_corners(r, &b, err);
-  if (!status) status = read_edges(r, &b, &ranges, err);
-  if (!status) status = read_faces(r, &b, ranges, err);
-  if (!status) status = read_shells(r, &b, err);
-  cag_free(ranges);
+  if (!status && !copied) status = read_boundary(r, &b, err);
   if (status) cag_boundary_free(&b);
   else *out = b;
   return status;

@@ -5,9 +5,10 @@
 
 #include "geom/boundary/boundary.h"
 #include "interp/kernel/fields.h"
+#include "interp/kernel/kernel.h"
 
-// Reads one solid of a RESULT: name, color, body, and boundary. Fails with
-// "kernel-answer" if the bytes are not one; *out is then empty.
-CagStatus cag_read_boundary(CagFieldReader *r, CagBoundary *out, CagError *err);
+// Reads one solid of a RESULT: name and color, then body and boundary or, of a copy, its original and
+// placement. Fails with "kernel-answer" if the bytes are not one; *out is then empty.
+CagStatus cag_read_part(CagFieldReader *r, CagBoundary *out, CagBoundaryCopy *copy, CagError *err);
 
 #endif

@@ -13,6 +13,7 @@
 void cag_boundaries_free(CagBoundaries *b) {
   for (size_t i = 0; i < b->count; i++) cag_boundary_free(&b->items[i]);
   cag_free(b->items);
+  cag_free(b->copies);
   *b = (CagBoundaries){0};
 }
 

@@ -8,7 +8,7 @@ import os
 import struct
 import subprocess
 
-PROTOCOL = 2
+PROTOCOL = 3
 HELLO, RESULT, FAILURE = 1, 2, 3
 EVALUATE, FILLET, CHAMFER, SHELL, OFFSET, DRAFT, SPLIT, IMPRINT, READ_STEP, READ_IGES = range(16, 26)
 FAIL_INPUT, FAIL_METHOD, FAIL_CHECK, FAIL_EMPTY, FAIL_FILE = range(1, 6)
@@ -328,6 +328,10 @@ class Part:
     def __init__(self, fields):
         self.name = fields.text().decode()
         self.color = fields.f64(3) if fields.u32() else None
+        self.original = fields.u32()
+        if self.original != NONE:
+            self.placement = fields.f64(12)
+            return
         self.body = fields.text()
         self.volume, self.area = fields.f64(2)
         self.centroid = fields.f64(3)
@@ -396,8 +400,11 @@ class Helper:
         assert answer == RESULT
         parts = [Part(fields) for _ in range(fields.u32())]
         assert fields.at == len(fields.data), "bytes after the result"
-        for part in parts:
-            check_boundary(part)
+        for i, part in enumerate(parts):
+            if part.original == NONE:
+                check_boundary(part)
+            else:
+                assert part.original < i and parts[part.original].original == NONE
         return parts
 
     def one(self, kind, *data):

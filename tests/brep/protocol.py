@@ -9,6 +9,7 @@ CAG, the program, exports the STEP and IGES files that are read again; without i
 import math
 import os
 import random
+import shutil
 import struct
 import subprocess
 import sys
@@ -17,6 +18,7 @@ import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from client import *  # noqa: E402,F403
+import turned_step  # noqa: E402
 
 HELPER = os.path.abspath(sys.argv[1])
 CAG = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 and sys.argv[2] else None
@@ -724,9 +726,13 @@ def test_step_assembly(h):
         parts = h.ask(READ_STEP, text(path))
     assert [part.name for part in parts] == ["Stein \u00df"] * 2, [part.name for part in parts]
     at(parts[0].centroid, (90, 5, 15), 1e-7)  # turned by 90 degrees about z
-    at(parts[1].centroid, (5, 210, 15), 1e-7)
+    near(parts[0].volume, 6000)
+    # The second one is a copy, with its centroid at (5, 210, 15).
+    assert parts[1].original == 0
+    rows = [parts[1].placement[i:i + 4] for i in (0, 4, 8)]
+    at([dot(row[:3], parts[0].centroid) + row[3] for row in rows], (5, 210, 15), 1e-7)
+    at([dot(rows[i][:3], rows[k][:3]) for i in range(3) for k in range(3)], (1, 0, 0, 0, 1, 0, 0, 0, 1), 1e-12)
     for part in parts:
-        near(part.volume, 6000)
         at(part.color, (1, 0, 0))
 
 
@@ -737,6 +743,45 @@ def test_step_in_other_units(h):
         near(part.volume, 6000e9)
         unicode_name = changed_step(folder, [("'brick'", r"'\X2\7816\X0\'")])
         assert h.one(READ_STEP, text(unicode_name)).name == "\u7816"
+
+
+def read_turned(h, kind):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "a.step")
+        with open(path, "w") as f:
+            f.write(turned_step.KINDS[kind]())
+        parts = h.ask(READ_STEP, text(path))
+    assert all(part.original == 0 for part in parts[1:])
+    return parts[0]
+
+
+def test_step_beyond_the_apex_of_a_cone(h):
+    part = read_turned(h, "cone")
+    near(part.volume, 6 * PI / 3 * (25 + 10 + 4))
+    cone = part.faces[part.kinds(CONICAL)[0]]
+    v0, v1 = cone.bounds[2:]
+    at(sorted(cone.surface.radius + v * math.sin(cone.surface.angle) for v in (v0, v1)), (2, 5))
+    assert cone.surface.radius > 0
+
+
+def test_step_within_a_torus(h):
+    part = read_turned(h, "torus")
+    # The integral of pi (sqrt(81 - z^2) - 4)^2 for z from -3 to 3.
+    across = 3 * math.sqrt(81 - 9) + 81 * math.asin(3 / 9)
+    near(part.volume, PI * ((81 + 16) * 6 - 2 * 27 / 3 - 2 * 4 * across))
+    face = part.faces[part.kinds(REVOLVED)[0]]
+    for v in face.bounds[2:]:
+        x, y, z = face.surface.at(0.5, v)
+        near(math.hypot(x, y), math.sqrt(81 - 9) - 4)
+        near(abs(z), 3)
+
+
+def test_seams_at_poles(h):
+    program = os.path.join(os.path.dirname(HELPER), "tests", "brep", "poles_test")
+    if not os.path.exists(program):
+        raise Skipped("poles_test is not built")
+    run = subprocess.run([program], stdout=subprocess.PIPE, text=True)
+    assert run.returncode == 0, run.stdout
 
 
 def test_damaged_files(h):
@@ -820,6 +865,19 @@ def test_damaged_bodies(h):
         changed[noise.randrange(len(changed))] ^= 1 << noise.randrange(8)
         assert h.fails(EVALUATE, solid(BODY, text(bytes(changed)))).reason == FAIL_INPUT
     assert h.fails(EVALUATE, solid(BODY, text(part.body[:100]))).reason == FAIL_INPUT
+
+
+def test_a_missing_module(h):
+    with tempfile.TemporaryDirectory() as folder:
+        alone = os.path.join(folder, "cag-brep")
+        shutil.copy(HELPER, alone)
+        other = Helper(alone)
+        failure = other.fails(FILLET, fillets(box(1, 1, 1), (0, 0.1, 0.1)))
+        assert failure.reason == FAIL_METHOD
+        assert "cannot load" in failure.what and "cag-brep-operations.so" in failure.what
+        # It still answers the requests that need no module.
+        near(other.one(EVALUATE, box(1, 2, 3)).volume, 6)
+        assert other.close() == 0
 
 
 def test_the_end_of_input(h):

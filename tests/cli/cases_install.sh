@@ -270,7 +270,10 @@ elif needs dpkg-shlibdeps; then
     grep -q " ./$file\$" cag.list || wrong "cag lacks $file"
   done
   grep -q 'libcag.so.0 -> ' libcag0.list || wrong 'libcag0 lacks libcag.so.0'
-  [ -z "$helper" ] || grep -q 'usr/lib/cag/cag-brep$' cag-brep.list || wrong 'cag-brep lacks its program'
+  for file in $helper ${helper:+$helper-exchange.so $helper-operations.so}; do
+    grep -q "usr/lib/cag/$file\$" cag-brep.list || wrong "cag-brep lacks $file"
+  done
+  [ -z "$helper" ] || grep '^ Depends:' cag-brep.info | grep -q libocct-data-exchange || wrong 'cag-brep does not depend on what its modules link'
   grep -q 'usr/include/cag.h$' libcag-dev.list || wrong 'libcag-dev lacks cag.h'
   ! awk '$2 != "root/root"' cag.list libcag0.list libcag-dev.list | grep -q . || wrong 'a file is not owned by root'
   if needs lintian; then
