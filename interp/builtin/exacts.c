@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "geom/mesh/smooth.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/exact.h"
 #include "geom/solid/recognized.h"
@@ -19,8 +18,6 @@
 // The default tolerance of meshes in place of exact results, likewise, and that of the mesh before.
 #define MESHED 3e-4
 #define FINER 0.5
-// Facets of rounded meshes turn by less, and edges that are not rounded by more (radians).
-#define ROUNDED_CREASE (40 * M_PI / 180)
 
 static CagKernel *find_kernel(CagCall *call) {
   const CagVm *vm = call->vm;
@@ -81,29 +78,8 @@ CagStatus cag_exacts_meshed(CagCall *call, const CagSolid *s, const CagSolid **o
   return CAG_OK;
 }
 
-// Gives smooth normals to a solid that was rounded on its mesh.
-static CagStatus smooth_rounded(CagCall *call, CagSolid **made) {
-  CagMesh *smooth;
-  CagSolid *solid = NULL;
-  const bool rounded = strncmp(call->builtin->signature, "fillet(", strlen("fillet(")) == 0;
-  if (!rounded || (*made)->kind != CAG_SOLID_MESH) return CAG_OK;
-  CagStatus status = cag_mesh_smooth((*made)->core->mesh, ROUNDED_CREASE, &smooth, call->err);
-  if (status) return status;
-  status = cag_solid_from_mesh(smooth, &solid, call->err);
-  cag_mesh_release(smooth);
-  if (status) return status;
-  cag_solid_release(*made);
-  *made = solid;
-  return CAG_OK;
-}
-
 bool cag_exacts_changed(CagCall *call, CagStatus status, CagSolid **made, CagValue *result) {
-  CagStatus done = status;
-  if (!done) {
-    done = smooth_rounded(call, made);
-    if (done) cag_solid_release(*made);
-  }
-  if (!cag_solid_result(call, done, made, result)) return false;
+  if (!cag_solid_result(call, status, made, result)) return false;
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }

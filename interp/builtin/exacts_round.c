@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "geom/linalg/tolerance.h"
+#include "geom/mesh/smooth.h"
+#include "geom/solid/csg.h"
 #include "geom/solid/rolling.h"
 #include "interp/builtin/exacts_match.h"
 #include "interp/builtin/exacts_parts.h"
@@ -18,6 +20,8 @@
 #define CLOSED 1e-9
 // Limits of the ball on the mesh are by its tolerance too large.
 #define CLEARLY 1.05
+// Facets of fillets on a mesh turn by less, and edges that are not rounded by more (radians).
+#define CREASE (40 * M_PI / 180)
 
 typedef CagStatus (*BlendRequest)(CagKernel *k, const CagBoundary *part, const CagBlend *blends,
                                   size_t n, CagBoundaries *out, CagKernelFailure *why,
@@ -201,6 +205,19 @@ static const CagRolledEdge *rolled_edges(const Blending *b) {
   return rolled;
 }
 
+// Gives smooth normals to a solid whose edges were filleted on its mesh.
+static CagStatus smooth_fillets(CagSolid **made, CagError *err) {
+  CagMesh *smooth;
+  CagSolid *flat = *made;
+  *made = NULL;
+  CagStatus status = cag_mesh_smooth(flat->core->mesh, CREASE, &smooth, err);
+  cag_solid_release(flat);
+  if (status) return status;
+  status = cag_solid_from_mesh(smooth, made, err);
+  cag_mesh_release(smooth);
+  return status;
+}
+
 // Rounds the mesh.
 static CagStatus roll_edges(const Blending *b, CagRollLimit *limit, CagSolid **out, CagError *err) {
   CagCall *call = b->parts->call;
@@ -209,6 +226,7 @@ static CagStatus roll_edges(const Blending *b, CagRollLimit *limit, CagSolid **o
   char said[96], number[32];
   CagStatus status = cag_exacts_tolerance(call, s, &tolerance, err);
   if (!status) status = b->words->roll(s, rolled_edges(b), b->n, tolerance, limit, out, err);
+  if (!status && !b->words->chamfer) status = smooth_fillets(out, err);
   if (status) return status;
   snprintf(said, sizeof said, "tier C: rolling ball on the mesh, within %s mm",
            cag_number_text(tolerance, number));
