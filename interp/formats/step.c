@@ -434,8 +434,8 @@ static Id face_surface(Writer *w, size_t index) {
   const CagBrepFace *f = &w->brep->faces[index];
   if (!w->surface[index])
     w->surface[index] = f->carrier.kind ? carrier(w, &f->carrier)
-                        : f->flat       ? entity(w, "PLANE('',#%zu)", placement(w, &f->carrier.frame))
-                                        : nurbs_surface(w, f->surface);
+                        : f->flat ? entity(w, "PLANE('',#%zu)", placement(w, &f->carrier.frame))
+                                  : nurbs_surface(w, f->surface);
   return w->surface[index];
 }
 
