@@ -534,9 +534,9 @@ stand_in ends 'exit 0'
 stand_in crashes 'kill -SEGV $$'
 stand_in babbles 'yes garbage'
 stand_in older "printf '${hello}\\143\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'; cat > /dev/null"
-stand_in leaves "printf '${hello}\\002\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'"
-stand_in hangs "printf '${hello}\\002\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'; cat > /dev/null; sleep 99"
-stand_in empty "printf '${hello}\\002\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'; printf '\\002\\000\\000\\000\\000\\000\\000\\000\\004\\000\\000\\000\\000\\000\\000\\000\\001\\000\\000\\000'; cat > /dev/null"
+stand_in leaves "printf '${hello}\\003\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'"
+stand_in hangs "printf '${hello}\\003\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'; cat > /dev/null; sleep 99"
+stand_in empty "printf '${hello}\\003\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000\\000'; printf '\\002\\000\\000\\000\\000\\000\\000\\000\\004\\000\\000\\000\\000\\000\\000\\000\\001\\000\\000\\000'; cat > /dev/null"
 for entry in none:'install the package cag-brep' ends:'does not start' crashes:'does not start' babbles:'does not start' \
   older:'same version' leaves:'ended before' empty:'not a boundary'; do
   name=${entry%%:*}

@@ -122,6 +122,27 @@ static void a_fillet_that_does_not_fit_says_which_edge_and_the_largest_radius(vo
 }
 
 // A chamfer takes d1 d2 / 2 per length.
+// The next request starts the program again.
+static void a_fillet_is_given_up_when_patience_ends(void **state) {
+  NEEDS_KERNEL;
+  CagSolid *s = a_box(10, 20, 30);
+  CagBoundary b = boundary_of(s);
+  size_t edges[12];
+  upright_edges(&b, edges);
+  const CagBlend blend = {.edge = edges[0], .first = 3, .last = 3};
+  CagBoundaries out;
+  CagKernelFailure why;
+  cag_kernel_set_patience(kernel, 1e-9);
+  assert_int_not_equal(cag_kernel_fillet(kernel, &b, &blend, 1, &out, &why, &err), CAG_OK);
+  assert_int_equal(err.id, CAG_ERR_kernel_failed);
+  assert_int_equal(why.reason, 0);
+  cag_kernel_set_patience(kernel, 0);
+  OK(cag_kernel_fillet(kernel, &b, &blend, 1, &out, &why, &err));
+  NEAR(volume_and_free(&out), 6000 - (1 - M_PI / 4) * 9 * 30, 1e-6);
+  cag_boundary_free(&b);
+  cag_solid_release(s);
+}
+
 static void a_chamfer_has_its_first_distance_on_the_given_face(void **state) {
   NEEDS_KERNEL;
   CagSolid *s = a_box(10, 20, 30);
@@ -317,6 +338,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(fillets_take_the_corners_of_a_box),
       cmocka_unit_test(a_fillet_that_does_not_fit_says_which_edge_and_the_largest_radius),
+      cmocka_unit_test(a_fillet_is_given_up_when_patience_ends),
       cmocka_unit_test(a_chamfer_has_its_first_distance_on_the_given_face),
       cmocka_unit_test(shells_and_offsets_of_a_box),
       cmocka_unit_test(drafts_make_a_frustum),
