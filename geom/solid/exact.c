@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/boundary/carrier.h"
 #include "geom/boundary/face_feature.h"
 #include "geom/boundary/measure.h"
 #include "geom/boundary/mesh.h"
@@ -22,7 +23,8 @@
 // accurate, unless the kernel's edges are far from its faces.
 #define VOLUME_SHARE 1e-3
 
-// The mesh of a check is not shown: it may turn as far (radians) as its tolerance allows, nearly.
+// The mesh of a check is not shown: where all faces have simple forms, it may turn as far (radians) as
+// its tolerance allows, nearly.
 #define CHECK_ANGLE (M_PI / 4)
 
 struct CagExact {
@@ -300,6 +302,13 @@ static CagStatus fail_volumes(const char *what, double found, double volume, Cag
                   cag_number_text(volume, b));
 }
 
+static bool is_analytic(const CagExact *x) {
+  for (size_t i = 0; i < x->count; i++)
+    for (size_t k = 0; k < x->parts[i].face_count; k++)
+      if (!cag_carrier_is_analytic(&x->parts[i].faces[k].carrier)) return false;
+  return true;
+}
+
 CagStatus cag_solid_exact_check(const CagSolid *s, CagError *err) {
   double terms[10] = {0}, volume = 0;
   CagSolidBody body;
@@ -314,7 +323,7 @@ CagStatus cag_solid_exact_check(const CagSolid *s, CagError *err) {
   if (status) return status;
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   how.tolerance = DEFAULT_SHARE * cag_norm(cag_sub(box.max, box.min));
-  how.angle = CHECK_ANGLE;
+  if (is_analytic(s->exact)) how.angle = CHECK_ANGLE;
   status = cag_exact_mesh(s, &how, &mesh, err);
   if (status) return status;
   cag_mesh_volume_terms(mesh, terms);
