@@ -13,9 +13,10 @@
 #include "geom/solid/roll_plan.h"
 #include "geom/solid/tessellate.h"
 
-// Steps to find the largest sizes that fit: with the test of contacts alone, and with the result.
+// Steps to find the largest sizes that fit: by the contacts alone, and by the result.
 #define CHEAP_STEPS 12
 #define FULL_STEPS 6
+#define FULL_STEPS_FEW 3
 // The mesh of the solid is this much finer than the result.
 #define FINER 0.5
 
@@ -94,12 +95,11 @@ static CagStatus try_plan(const Rolling *r, double factor, CagRollCorners corner
   return status;
 }
 
-// Tries sizes. *unfit: the edge that does not fit, or CAG_ROLL_NONE. out: NULL for the test of
-// contacts only; otherwise set if it fits. If zones fail, edges are mitered.
+// Tries sizes. *unfit: the edge that does not fit, or CAG_ROLL_NONE. *out is set if all fit. If zones
+// fail, edges are mitered.
 static CagStatus try_factor(const Rolling *r, double factor, CagMesh **out, size_t *unfit,
                             CagError *err) {
   bool zones = false;
-  if (!out) return try_plan(r, factor, CAG_ROLL_BALLS, NULL, unfit, &zones, err);
   CagStatus status = try_plan(r, factor, CAG_ROLL_ZONES, out, unfit, &zones, err);
   if (cag_is_final(status) || !zones || (!status && *unfit == CAG_ROLL_NONE)) return status;
   return try_plan(r, factor, CAG_ROLL_MITERS, out, unfit, &zones, err);
@@ -107,16 +107,19 @@ static CagStatus try_factor(const Rolling *r, double factor, CagMesh **out, size
 
 // Finds the largest factor below 1 that fits; 0 if there is none. Errors count as not fitting,
 // except those that end the run.
-static CagStatus largest_factor(const Rolling *r, double *out, CagError *err) {
+static CagStatus search_factor(const Rolling *r, CagRollCorners corners, int full_steps,
+                               double *out, CagError *err) {
   double low = 0, high = 1;
-  for (int k = 0; k < CHEAP_STEPS + FULL_STEPS; k++) {
+  for (int k = 0; k < CHEAP_STEPS + full_steps; k++) {
     const bool full = k >= CHEAP_STEPS;
     // The first full test is that of the factor found so far.
     const double middle = k == CHEAP_STEPS ? low : (low + high) / 2;
     CagMesh *m = NULL;
     size_t unfit = CAG_ROLL_NONE;
+    bool zones;
     if (full && !(middle > 0)) break;
-    CagStatus status = try_factor(r, middle, full ? &m : NULL, &unfit, err);
+    CagStatus status = full ? try_factor(r, middle, &m, &unfit, err)
+                            : try_plan(r, middle, corners, NULL, &unfit, &zones, err);
     cag_mesh_release(m);
     if (cag_is_final(status)) return status;
     const bool fits = !status && unfit == CAG_ROLL_NONE;
@@ -128,21 +131,26 @@ static CagStatus largest_factor(const Rolling *r, double *out, CagError *err) {
   return CAG_OK;
 }
 
+// Balls at corners limit the sizes, unless a corner has none of any size.
+static CagStatus largest_factor(const Rolling *r, double *out, CagError *err) {
+  const CagStatus status = search_factor(r, CAG_ROLL_BALLS, FULL_STEPS, out, err);
+  if (status || *out > 0) return status;
+  return search_factor(r, CAG_ROLL_MITERS, FULL_STEPS_FEW, out, err);
+}
+
+// limit: NULL: the largest size, which takes long to find, is not told.
 static CagStatus fail_unfit(const Rolling *r, size_t unfit, CagRollLimit *limit, CagError *err) {
-  double factor;
-  char given[32], largest[32];
-  CagStatus status = largest_factor(r, &factor, err);
+  double factor = 0;
+  char given[32], largest[64] = "";
+  CagStatus status = limit ? largest_factor(r, &factor, err) : CAG_OK;
   if (status) return status;
   if (limit) *limit = (CagRollLimit){unfit, factor};
   const double size = fmax(r->edges[unfit].size[0], r->edges[unfit].size[1]);
   cag_number_text(size, given);
-  snprintf(largest, sizeof largest, "%.4g", factor * size);
-  if (!(factor > 0))
-    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_rounding_too_large, "edges", (long)unfit,
-                    "a %s of %s does not fit at edges[%zu]", rounding_name(r->flat), given, unfit);
+  if (factor > 0) snprintf(largest, sizeof largest, ": at most about %.4g", factor * size);
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_rounding_too_large, "edges", (long)unfit,
-                  "a %s of %s does not fit at edges[%zu]: at most about %s", rounding_name(r->flat),
-                  given, unfit, largest);
+                  "a %s of %s does not fit at edges[%zu]%s", rounding_name(r->flat), given, unfit,
+                  largest);
 }
 
 static CagStatus round_edges(const CagSolid *s, const CagRolledEdge *edges, size_t n, bool flat,

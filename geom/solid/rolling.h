@@ -37,7 +37,8 @@ typedef struct CagRollLimit {
 //   tolerance  mm, positive: the distance of the result from the rounded solid. Where the ball
 //              touches a curved face, the line of contact may be off by sqrt(2 radius tolerance)
 //              along the face.
-//   limit      set if the error is "rounding-too-large"; may be NULL
+//   limit      set if the error is "rounding-too-large"; NULL: the largest factor is not sought, which
+//              takes several times as long as rounding
 //
 // The result has the kind MESH. It is watertight, its volume differs from that of the solid by at
 // most the volumes of the bodies, and it passes through the arc of each edge at its middle, or at a
