@@ -162,7 +162,7 @@ $(BUILD)/obj/brep/%.o: brep/%.cpp
 	$Q$(CXX) -std=c++17 $(BREP_OPT) -g -Wall -Wextra -Werror -MMD -MP -I. -isystem $(dir $(OCCT_H)) -DCAG_VERSION='"$(VERSION)"' $(SANITIZE) \
 	  $(CXXFLAGS) -fPIC -c $< -o $@
 # The modules use functions of the program.
-$(BUILD)/cag-brep: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_SRC))
+$(BUILD)/cag-brep: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_SRC)) | $(patsubst %,$(BUILD)/%.so,$(BREP_MODULES))
 	$Q$(CXX) $^ -o $@ -rdynamic -Wl,--as-needed $(OCCT_LIBS) $(SANITIZE) $(LDFLAGS)
 $(BUILD)/cag-brep-exchange.so: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_EXCHANGE))
 $(BUILD)/cag-brep-operations.so: $(patsubst %.cpp,$(BUILD)/obj/%.o,$(BREP_OPERATIONS))
