@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/linalg/tolerance.h"
 #include "geom/surface/frames.h"
 #include "geom/tessellate/sides.h"
@@ -199,7 +200,7 @@ static void fill_regular(Fill *f, const Leaf *leaf, uint32_t first) {
    : (i) == nu ? chain_vertex(t, &side[SIDE_U1], j)                                                \
                : first + ((i)-1) * stride + (j)-1)
   const CagVec3 *p = f->mesh->positions;
-  for (uint32_t i = 0; i < nu; i++) {
+  for (uint32_t i = 0; i < nu && !cag_stopped(); i++) {
     bool inner_column = i > 0 && i + 1 < nu;
     for (uint32_t j = 0; j < nv; j++) {
       if (!inner_column || j == 0 || j + 1 == nv) {
@@ -246,7 +247,7 @@ static void fill_stitched(Fill *f, const Leaf *leaf, uint32_t first) {
   double step[2];
   for (int d = 0; d < 2; d++) step[d] = (leaf->to[d] - leaf->from[d]) / leaf->n[d];
   for (int side = 0; side < 4; side++) corners &= leaf->segments[side] > 1;
-  for (uint32_t i = 0; i + 2 < nu; i++)
+  for (uint32_t i = 0; i + 2 < nu && !cag_stopped(); i++)
     for (uint32_t j = 0; j + 2 < nv; j++) {
       uint32_t a = first + i * stride + j;
       add_quad(f, a, a + stride, a + stride + 1, a + 1);
@@ -376,7 +377,7 @@ static CagStatus fill_leaf(Fill *f, const Leaf *leaf, CagError *err) {
   if (status) return status;
   if (leaf->regular) fill_regular(f, leaf, first);
   else fill_stitched(f, leaf, first);
-  return CAG_OK;
+  return cag_stop_check(err);
 }
 
 // Determines the nodes on the leaf's sides, and the kind of filling they allow.
@@ -455,7 +456,7 @@ static bool weld_shrunk(CagMesh *m, const uint32_t *k, double noise) {
 // in one point that is not a pole.
 static void drop_shrunk(CagMesh *m, double noise) {
   size_t kept = 0;
-  for (size_t t = 0; t < m->triangle_count; t++) {
+  for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
     const uint32_t *k = m->triangles + 3 * t;
     if (weld_shrunk(m, k, noise)) continue;
     if (kept < t) memcpy(m->triangles + 3 * kept, k, 3 * sizeof *k);
@@ -475,7 +476,7 @@ static void complete_normals(CagMesh *m) {
   if (!missing) return cag_note_memory();
   for (size_t v = 0; v < m->vertex_count; v++)
     missing[v] = cag_dot(m->normals[v], m->normals[v]) == 0;
-  for (size_t t = 0; t < m->triangle_count; t++) {
+  for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
     const uint32_t *k = m->triangles + 3 * t;
     if (!missing[k[0]] && !missing[k[1]] && !missing[k[2]]) continue;
     CagVec3 a = m->positions[k[0]];
@@ -544,7 +545,8 @@ CagStatus cag_tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
   f.mesh->triangle_count = f.triangles;
   drop_shrunk(f.mesh, t->noise);
   if (t->needs_normals) complete_normals(f.mesh);
-  status = cag_tess_turn_edges(t, f.mesh, err);
+  status = cag_stop_check(err);
+  if (!status) status = cag_tess_turn_edges(t, f.mesh, err);
   if (!status) *out = f.mesh;
   else cag_mesh_release(f.mesh);
   return status;

@@ -131,7 +131,7 @@ static CagStatus find_neighbors(Turner *t, CagError *err) {
     for (size_t v = 2; v < m->vertex_count + 2; v++) starts[v] += starts[v - 1];
     for (uint32_t k = 0; k < count; k++) corners[starts[m->triangles[k] + 1]++] = k;
   }
-  for (uint32_t k = 0; starts && corners && k < count; k++) {
+  for (uint32_t k = 0; starts && corners && k < count && !cag_stopped(); k++) {
     const uint32_t a = m->triangles[k], b = m->triangles[k - k % 3 + next_corner[k % 3]];
     t->beside[k] = NO_INDEX;
     for (uint32_t i = starts[b]; i < starts[b + 1]; i++) {
@@ -139,7 +139,7 @@ static CagStatus find_neighbors(Turner *t, CagError *err) {
       if (m->triangles[other - other % 3 + next_corner[other % 3]] == a) t->beside[k] = other / 3;
     }
   }
-  const CagStatus status = starts && corners ? CAG_OK : cag_fail_memory(err);
+  const CagStatus status = starts && corners ? cag_stop_check(err) : cag_fail_memory(err);
   cag_free(starts);
   cag_free(corners);
   return status;

@@ -6,7 +6,10 @@
 // of the processors, if it is less: a machine that stands still for seconds is no such operation.
 // An operation that ended late runs again, because the first use of memory in a virtual machine
 // may take seconds, which count as time of the processors. One that does not check is always late.
+// The calls that are active a second after the limit are printed.
 
+#include <dirent.h>
+#include <execinfo.h>
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -28,9 +31,10 @@
 
 // Seconds until an operation must end, until it must have ended, and after which the test gives up.
 #define LIMIT 0.15
-#define LATE 3.0
+#define LATE 8.0
 #define HOPELESS 60
-#define TRIALS 3 // so often is an operation late that fails the test
+#define SUSPECT 1.0 // from the limit, until the place is printed
+#define TRIALS 3    // so often is an operation late that fails the test
 
 // Definitions that the scripts use.
 static const char prelude[] =
@@ -72,6 +76,42 @@ static void give_up(int signal) {
   _exit(1);
 }
 
+// Prints the calls of the thread.
+static void write_place(int signal) {
+  (void)signal;
+  void *calls[64];
+  backtrace_symbols_fd(calls, backtrace(calls, sizeof calls / sizeof *calls), STDERR_FILENO);
+}
+
+static timer_t suspicion;
+
+// Tells where each thread is.
+static void write_places(union sigval unused) {
+  (void)unused;
+  DIR *tasks = opendir("/proc/self/task");
+  fprintf(stderr, "%s\n  is late; its threads are in\n", now_running);
+  for (const struct dirent *task; tasks && (task = readdir(tasks));) {
+    const pid_t id = (pid_t)atol(task->d_name);
+    if (id != 0 && id != gettid()) tgkill(getpid(), id, SIGUSR1);
+  }
+  if (tasks) closedir(tasks);
+}
+
+static int prepare_places(void) {
+  struct sigevent by_thread = {.sigev_notify = SIGEV_THREAD, .sigev_notify_function = write_places};
+  struct sigaction action = {.sa_handler = write_place, .sa_flags = SA_RESTART};
+  void *call;
+  backtrace(&call, 1); // the first call loads a library, which a signal handler must not
+  return sigaction(SIGUSR1, &action, NULL) || timer_create(CLOCK_MONOTONIC, &by_thread, &suspicion);
+}
+
+// 0: never.
+static void write_places_after(double seconds) {
+  const struct itimerspec once = {
+      .it_value = {(time_t)seconds, (long)((seconds - floor(seconds)) * 1e9)}};
+  timer_settime(suspicion, 0, &once, NULL);
+}
+
 static void *interrupt_later(void *context) {
   (void)context;
   const struct timespec wait = {0, (long)(LIMIT * 1e9)};
@@ -93,6 +133,7 @@ static double processor_seconds(void) {
 }
 
 static void begin_time(Run *r) {
+  write_places_after(LIMIT + SUSPECT);
   r->begun = cag_clock_seconds();
   r->begun_processor = processor_seconds();
 }
@@ -121,6 +162,7 @@ static End end(Run *r, int status, int wanted) {
   const double late =
       fmin(cag_clock_seconds() - r->begun - LIMIT, processor_seconds() - r->begun_processor);
   alarm(0);
+  write_places_after(0);
   const End how = status != wanted ? ENDED_WRONGLY : late > LATE ? ENDED_LATE : ENDED;
   if (how != ENDED) {
     print_error("%s\n  status %d in place of %d, %g s after the limit\n", now_running, status,
@@ -176,6 +218,7 @@ static End end_of_export(const void *context) {
   pthread_t thread;
   Run r = begin(h->script, 0);
   alarm(0); // making the shapes may take any time
+  write_places_after(0);
   const int shown = run_script(r.session, h->script);
   begin_time(&r);
   if (shown != CAG_STATUS_OK) return end(&r, shown, CAG_STATUS_OK);
@@ -310,7 +353,7 @@ static void a_limit_ends_the_reading_of_large_files(void **state) {
 static int make_folder(void **state) {
   (void)state;
   signal(SIGALRM, give_up);
-  return mkdtemp(folder) ? 0 : -1;
+  return mkdtemp(folder) && prepare_places() == 0 ? 0 : -1;
 }
 
 static int remove_folder(void **state) {
