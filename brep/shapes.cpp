@@ -201,6 +201,11 @@ static double read_radius(Reader &in) {
   return radius;
 }
 
+static bool is_whole_turn(const Ref<Geom_Curve> &curve, double first, double last) {
+  return curve->IsPeriodic() && Ref<Geom_BSplineCurve>::DownCast(curve).IsNull() &&
+         std::abs(std::abs(last - first) - 2 * M_PI) <= 1e-12;
+}
+
 static void read_arcs(Reader &in, const Space &space, std::vector<Arc> &arcs) {
   const uint32_t kind = in.u32();
   Ref<Geom_Curve> curve;
@@ -236,9 +241,14 @@ static void read_arcs(Reader &in, const Space &space, std::vector<Arc> &arcs) {
   case CAG_BREP_SPLINE_CURVE: curve = read_spline(in, space); break;
   default: throw Failure{CAG_BREP_FAIL_INPUT, "unknown kind of curve " + std::to_string(kind)};
   }
-  const double first = in.f64() + shift, last = in.f64() + shift;
+  double first = in.f64() + shift, last = in.f64() + shift;
   if (!(std::abs(last - first) > 1e-15))
     throw Failure{CAG_BREP_FAIL_INPUT, "a curve has no length"};
+  if (is_whole_turn(curve, first, last)) {
+    // The kernel cuts surfaces along whole ellipses wrongly if their seams are elsewhere.
+    last = last > first ? 2 * M_PI : -2 * M_PI;
+    first = 0;
+  }
   const Ref<Geom_BSplineCurve> spline = Ref<Geom_BSplineCurve>::DownCast(curve);
   if (spline.IsNull()) arcs.emplace_back(curve, first, last);
   else split_spline(spline, first, last, arcs);
