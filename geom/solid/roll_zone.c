@@ -57,9 +57,18 @@ static CagStatus check_count(const CagRollZone *z, const CagMesh *m, size_t most
                   z->point.x, z->point.y, z->point.z);
 }
 
+static double ball_tolerance(const CagRollZone *z, double tolerance) {
+  return fmax(tolerance / 2, COARSE * z->radius);
+}
+
+// Each of the two offsets is off by the tolerance of the ball, the second one also by its excess.
+double cag_roll_zone_within(const CagRollZone *z, double tolerance) {
+  return 2 * ball_tolerance(z, tolerance);
+}
+
 CagStatus cag_roll_apply_zone(const CagRollZone *z, double tolerance, CagMesh **mesh, bool *fits,
                               CagError *err) {
-  const double sign = z->convex ? -1 : 1, fine = fmax(tolerance / 2, COARSE * z->radius);
+  const double sign = z->convex ? -1 : 1, fine = ball_tolerance(z, tolerance);
   CagMesh *part = NULL, *first = NULL, *second = NULL, *ball = NULL, *body = NULL, *next;
   *fits = false;
   CagStatus status = zone_part(z, *mesh, &part, err);

@@ -14,4 +14,7 @@
 CagStatus cag_roll_apply_zone(const CagRollZone *z, double tolerance, CagMesh **mesh, bool *fits,
                               CagError *err);
 
+// The distance of the result from the opened or closed solid.
+double cag_roll_zone_within(const CagRollZone *z, double tolerance);
+
 #endif

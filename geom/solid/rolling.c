@@ -11,6 +11,7 @@
 #include "geom/solid/csg.h"
 #include "geom/solid/roll_apply.h"
 #include "geom/solid/roll_plan.h"
+#include "geom/solid/roll_zone.h"
 #include "geom/solid/tessellate.h"
 
 // Steps to find the largest sizes that fit: by the contacts alone, and by the result.
@@ -81,8 +82,9 @@ static CagStatus scaled_plan(const Rolling *r, double factor, CagRollCorners cor
   return cag_roll_plan(r->parts, r->part_count, r->tolerance, corners, picks, r->n, out, err);
 }
 
+// *zones: the distance of the result near zones, 0 without them.
 static CagStatus try_plan(const Rolling *r, double factor, CagRollCorners corners, CagMesh **out,
-                          size_t *unfit, bool *zones, CagError *err) {
+                          size_t *unfit, double *zones, CagError *err) {
   CagRollPlan plan;
   CagStatus status = scaled_plan(r, factor, corners, &plan, err);
   if (status) return status;
@@ -90,18 +92,22 @@ static CagStatus try_plan(const Rolling *r, double factor, CagRollCorners corner
   if (!status && out && plan.unfit == CAG_ROLL_NONE)
     status = cag_roll_apply(&plan, r->mesh, out, err);
   *unfit = plan.unfit;
-  *zones = plan.zone_count > 0;
+  *zones = 0;
+  for (size_t i = 0; i < plan.zone_count; i++)
+    *zones = fmax(*zones, cag_roll_zone_within(&plan.zones[i], r->tolerance));
   cag_roll_plan_free(&plan);
   return status;
 }
 
 // Tries sizes. *unfit: the edge that does not fit, or CAG_ROLL_NONE. *out is set if all fit. If zones
-// fail, edges are mitered.
+// fail, edges are mitered. *within: the distance of the result.
 static CagStatus try_factor(const Rolling *r, double factor, CagMesh **out, size_t *unfit,
-                            CagError *err) {
-  bool zones = false;
+                            double *within, CagError *err) {
+  double zones = 0;
   CagStatus status = try_plan(r, factor, CAG_ROLL_ZONES, out, unfit, &zones, err);
-  if (cag_is_final(status) || !zones || (!status && *unfit == CAG_ROLL_NONE)) return status;
+  *within = fmax(r->tolerance, zones);
+  if (cag_is_final(status) || zones == 0 || (!status && *unfit == CAG_ROLL_NONE)) return status;
+  *within = r->tolerance;
   return try_plan(r, factor, CAG_ROLL_MITERS, out, unfit, &zones, err);
 }
 
@@ -116,10 +122,10 @@ static CagStatus search_factor(const Rolling *r, CagRollCorners corners, int ful
     const double middle = k == CHEAP_STEPS ? low : (low + high) / 2;
     CagMesh *m = NULL;
     size_t unfit = CAG_ROLL_NONE;
-    bool zones;
+    double ignored;
     if (full && !(middle > 0)) break;
-    CagStatus status = full ? try_factor(r, middle, &m, &unfit, err)
-                            : try_plan(r, middle, corners, NULL, &unfit, &zones, err);
+    CagStatus status = full ? try_factor(r, middle, &m, &unfit, &ignored, err)
+                            : try_plan(r, middle, corners, NULL, &unfit, &ignored, err);
     cag_mesh_release(m);
     if (cag_is_final(status)) return status;
     const bool fits = !status && unfit == CAG_ROLL_NONE;
@@ -154,11 +160,13 @@ static CagStatus fail_unfit(const Rolling *r, size_t unfit, CagRollLimit *limit,
 }
 
 static CagStatus round_edges(const CagSolid *s, const CagRolledEdge *edges, size_t n, bool flat,
-                             double tolerance, CagRollLimit *limit, CagSolid **out, CagError *err) {
+                             double tolerance, CagRollLimit *limit, double *within, CagSolid **out,
+                             CagError *err) {
   Rolling r = {.edges = edges, .n = n, .flat = flat, .tolerance = tolerance};
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagMesh *m = NULL;
   size_t unfit = CAG_ROLL_NONE;
+  double reached = tolerance;
   if (limit) *limit = (CagRollLimit){SIZE_MAX, 0};
   if (!(tolerance > 0))
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_tolerance_not_positive, "tolerance", -1,
@@ -168,9 +176,10 @@ static CagStatus round_edges(const CagSolid *s, const CagRolledEdge *edges, size
   if (status) return status;
   status = check_edges(&r, err);
   if (!status) status = cag_solid_tessellate(s, &how, &r.mesh, err);
-  if (!status) status = try_factor(&r, 1, &m, &unfit, err);
+  if (!status) status = try_factor(&r, 1, &m, &unfit, &reached, err);
   if (!status && unfit != CAG_ROLL_NONE) status = fail_unfit(&r, unfit, limit, err);
   if (!status) status = cag_solid_from_mesh(m, out, err);
+  if (within) *within = reached;
   cag_mesh_release(m);
   cag_mesh_release(r.mesh);
   cag_roll_parts_free(r.parts, r.part_count);
@@ -178,11 +187,11 @@ static CagStatus round_edges(const CagSolid *s, const CagRolledEdge *edges, size
 }
 
 CagStatus cag_solid_roll(const CagSolid *s, const CagRolledEdge *edges, size_t n, double tolerance,
-                         CagRollLimit *limit, CagSolid **out, CagError *err) {
-  return round_edges(s, edges, n, false, tolerance, limit, out, err);
+                         CagRollLimit *limit, double *within, CagSolid **out, CagError *err) {
+  return round_edges(s, edges, n, false, tolerance, limit, within, out, err);
 }
 
 CagStatus cag_solid_bevel(const CagSolid *s, const CagRolledEdge *edges, size_t n, double tolerance,
-                          CagRollLimit *limit, CagSolid **out, CagError *err) {
-  return round_edges(s, edges, n, true, tolerance, limit, out, err);
+                          CagRollLimit *limit, double *within, CagSolid **out, CagError *err) {
+  return round_edges(s, edges, n, true, tolerance, limit, within, out, err);
 }

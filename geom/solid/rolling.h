@@ -36,18 +36,20 @@ typedef struct CagRollLimit {
 //
 //   tolerance  mm, positive: the distance of the result from the rounded solid. Where the ball
 //              touches a curved face, the line of contact may be off by sqrt(2 radius tolerance)
-//              along the face.
+//              along the face. Corners that are opened or closed are not as fine.
 //   limit      set if the error is "rounding-too-large"; NULL: the largest factor is not sought, which
 //              takes several times as long as rounding
+//   within     set to the distance of the result: the tolerance, or more if corners were opened or
+//              closed; may be NULL
 //
 // The result has the kind MESH. It is watertight, its volume differs from that of the solid by at
 // most the volumes of the bodies, and it passes through the arc of each edge at its middle, or at a
 // quarter of it. Fails with "rounding-too-large" if the sizes do not fit on the faces, and with
 // "no-boundary" if the solid has no boundary, or if the result fails this test.
 CagStatus cag_solid_roll(const CagSolid *s, const CagRolledEdge *edges, size_t n, double tolerance,
-                         CagRollLimit *limit, CagSolid **out, CagError *err);
+                         CagRollLimit *limit, double *within, CagSolid **out, CagError *err);
 // The same for chamfers, whose sections are straight. Corners have no face of their own.
 CagStatus cag_solid_bevel(const CagSolid *s, const CagRolledEdge *edges, size_t n, double tolerance,
-                          CagRollLimit *limit, CagSolid **out, CagError *err);
+                          CagRollLimit *limit, double *within, CagSolid **out, CagError *err);
 
 #endif

@@ -28,8 +28,8 @@ static bool add_made(CagExactParts *p, CagStatus status, CagBoundaries *made) {
 
 static void say_meshed(CagCall *call, const char *how, double tolerance, const char *what,
                        size_t count) {
-  char said[96], number[32];
-  snprintf(said, sizeof said, "tier C: %s, within %s mm", how, cag_number_text(tolerance, number));
+  char said[96];
+  snprintf(said, sizeof said, "tier C: %s, within %.3g mm", how, tolerance);
   cag_exacts_say_tier(call, said, what, count);
 }
 

@@ -32,7 +32,7 @@ typedef struct BlendWords {
   const char *verb, *size;
   BlendRequest request;
   CagStatus (*roll)(const CagSolid *s, const CagRolledEdge *edges, size_t n, double tolerance,
-                    CagRollLimit *limit, CagSolid **out, CagError *err);
+                    CagRollLimit *limit, double *within, CagSolid **out, CagError *err);
   bool chamfer;
 } BlendWords;
 
@@ -222,14 +222,14 @@ static CagStatus smooth_fillets(CagSolid **made, CagError *err) {
 static CagStatus roll_edges(const Blending *b, CagRollLimit *limit, CagSolid **out, CagError *err) {
   CagCall *call = b->parts->call;
   const CagSolid *s = b->parts->solid;
-  double tolerance;
-  char said[96], number[32];
+  double tolerance, within;
+  char said[96];
   CagStatus status = cag_exacts_tolerance(call, s, &tolerance, err);
-  if (!status) status = b->words->roll(s, rolled_edges(b), b->n, tolerance, limit, out, err);
+  if (!status)
+    status = b->words->roll(s, rolled_edges(b), b->n, tolerance, limit, &within, out, err);
   if (!status && !b->words->chamfer) status = smooth_fillets(out, err);
   if (status) return status;
-  snprintf(said, sizeof said, "tier C: rolling ball on the mesh, within %s mm",
-           cag_number_text(tolerance, number));
+  snprintf(said, sizeof said, "tier C: rolling ball on the mesh, within %.3g mm", within);
   cag_exacts_say_tier(call, said, "edges", b->n);
   return CAG_OK;
 }

@@ -55,12 +55,12 @@ QUESTION(smoothing) {
 QUESTION(rolling) {
   const Rounded *r = given;
   CagSolid *s = NULL;
-  return drop_solid(cag_solid_roll(r->solid, r->edges, 2, COARSE, NULL, &s, e), &s);
+  return drop_solid(cag_solid_roll(r->solid, r->edges, 2, COARSE, NULL, NULL, &s, e), &s);
 }
 QUESTION(bevel) {
   const Rounded *r = given;
   CagSolid *s = NULL;
-  return drop_solid(cag_solid_bevel(r->solid, r->edges, 2, COARSE, NULL, &s, e), &s);
+  return drop_solid(cag_solid_bevel(r->solid, r->edges, 2, COARSE, NULL, NULL, &s, e), &s);
 }
 QUESTION(closed_shell) {
   CagSolid *s = NULL;
@@ -94,7 +94,7 @@ static Rounded rounded_box(void) {
   cag_features_free(&f);
   // The solid keeps its mesh.
   CagSolid *s;
-  OK(cag_solid_roll(r.solid, r.edges, 2, COARSE, NULL, &s, &err));
+  OK(cag_solid_roll(r.solid, r.edges, 2, COARSE, NULL, NULL, &s, &err));
   cag_solid_release(s);
   return r;
 }

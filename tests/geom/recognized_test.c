@@ -168,12 +168,12 @@ static void edges_are_rounded(void **state) {
   assert_int_equal(n, 4);
   assert_int_equal(rim, 2);
   const double block = 4000 - 160 * M_PI, layer = 1300 * TOLERANCE;
-  OK(cag_solid_roll(s, upright, 4, TOLERANCE, NULL, &out, &err));
+  OK(cag_solid_roll(s, upright, 4, TOLERANCE, NULL, NULL, &out, &err));
   NEAR(volume_of(out), block - 4 * 10 * (1 - M_PI / 4) * 4, layer / 4);
   // Pappus: the section between a square of side 2 and its quarter of a circle, about the axis. Its
   // moment is that of the square less that of the quarter.
   const double moment = 4 * (4 + 1) - (M_PI * (6 - 8 / (3 * M_PI)));
-  OK(cag_solid_roll(s, rims, 2, TOLERANCE, NULL, &out, &err));
+  OK(cag_solid_roll(s, rims, 2, TOLERANCE, NULL, NULL, &out, &err));
   NEAR(volume_of(out), block - 2 * 2 * M_PI * moment, layer / 4);
   cag_features_free(&f);
   cag_solid_release(s);

@@ -67,7 +67,9 @@ static double volume_of(CagSolid *s) {
 
 static double rolled_volume(const Shape *s, double tolerance) {
   CagSolid *out;
-  OK(cag_solid_roll(s->solid, s->edges, s->n, tolerance, NULL, &out, &err));
+  double within;
+  OK(cag_solid_roll(s->solid, s->edges, s->n, tolerance, NULL, &within, &out, &err));
+  assert_true(within >= tolerance && within <= fmax(tolerance, s->edges[0].size[0] / 6));
   return volume_of(out);
 }
 
@@ -162,15 +164,16 @@ static void what_does_not_fit(void **state) {
   CagSolid *out;
   CagRollLimit limit;
   choose(&s, is_any, 3.5, 3.5);
-  FAILS_AMONG(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, &limit, &out, &err), "rounding-too-large",
-              0, 11);
+  FAILS_AMONG(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, &limit, NULL, &out, &err),
+              "rounding-too-large", 0, 11);
   NEAR(limit.factor * 3.5, 3, 0.01);
   choose(&s, is_vertical, 5, 5);
-  FAILS_AMONG(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, &limit, &out, &err), "rounding-too-large",
-              0, 3);
+  FAILS_AMONG(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, &limit, NULL, &out, &err),
+              "rounding-too-large", 0, 3);
   NEAR(limit.factor * 5, 4, 0.1);
   choose(&s, is_vertical, 9, 9);
-  FAILS_AT(cag_solid_roll(s.solid, s.edges, 1, 1e-3, &limit, &out, &err), "rounding-too-large", 0);
+  FAILS_AT(cag_solid_roll(s.solid, s.edges, 1, 1e-3, &limit, NULL, &out, &err),
+           "rounding-too-large", 0);
   NEAR(limit.factor * 9, 8, 0.01);
   shape_free(&s);
 }
@@ -224,13 +227,13 @@ static void bevels(void **state) {
   CagSolid *out;
   Shape s = shape_of(a_box(10, 8, 6));
   choose(&s, is_vertical, 1, 2);
-  OK(cag_solid_bevel(s.solid, s.edges, s.n, 1e-3, NULL, &out, &err));
+  OK(cag_solid_bevel(s.solid, s.edges, s.n, 1e-3, NULL, NULL, &out, &err));
   NEAR(volume_of(out), 480 - 4 * 6, 1e-9);
   shape_free(&s);
   // Each corner of the L's top removes a third of a cube less, or more.
   s = shape_of(an_l());
   choose(&s, is_top, 1, 1);
-  OK(cag_solid_bevel(s.solid, s.edges, s.n, 1e-3, NULL, &out, &err));
+  OK(cag_solid_bevel(s.solid, s.edges, s.n, 1e-3, NULL, NULL, &out, &err));
   NEAR(volume_of(out), 3000 - 40 + 5.0 / 3 - 1.0 / 3, 1e-9);
   shape_free(&s);
 }
@@ -250,14 +253,15 @@ static void what_is_not_an_edge(void **state) {
   Shape s = shape_of(a_box(10, 8, 6));
   CagSolid *out, *plain = a_box(1, 1, 1);
   choose(&s, is_vertical, 1, 1);
-  FAILS(cag_solid_roll(plain, s.edges, s.n, 1e-3, NULL, &out, &err), "no-boundary");
-  FAILS(cag_solid_roll(s.solid, s.edges, s.n, 0, NULL, &out, &err), "tolerance-not-positive");
+  FAILS(cag_solid_roll(plain, s.edges, s.n, 1e-3, NULL, NULL, &out, &err), "no-boundary");
+  FAILS(cag_solid_roll(s.solid, s.edges, s.n, 0, NULL, NULL, &out, &err), "tolerance-not-positive");
   s.edges[1] = s.edges[0];
-  FAILS_AT(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, NULL, &out, &err), "no-boundary", 1);
+  FAILS_AT(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, NULL, NULL, &out, &err), "no-boundary", 1);
   s.edges[1].edge = 99;
-  FAILS_AT(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, NULL, &out, &err), "no-boundary", 1);
+  FAILS_AT(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, NULL, NULL, &out, &err), "no-boundary", 1);
   s.edges[0].size[1] = 0;
-  FAILS_AT(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, NULL, &out, &err), "radius-not-positive", 0);
+  FAILS_AT(cag_solid_roll(s.solid, s.edges, s.n, 1e-3, NULL, NULL, &out, &err),
+           "radius-not-positive", 0);
   cag_solid_release(plain);
   shape_free(&s);
 }
