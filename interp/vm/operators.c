@@ -317,6 +317,8 @@ static const char *operand_help(CagBinaryOp op, CagValue a, CagValue b) {
     return "put the value into the text: \"... {x}\"";
   if (op == CAG_OP_UNION && a.type == CAG_BOOL) return "write `or`";
   if (op == CAG_OP_INTERSECTION && a.type == CAG_BOOL) return "write `and`";
+  if (op == CAG_OP_ADD && is_body(a) && is_body(b)) return "the union is a | b";
+  if (op == CAG_OP_MULTIPLY && is_body(a) && is_body(b)) return "the intersection is a & b";
   if (b.type == CAG_TRANSFORM && cag_is_shape(a)) return "the transform comes first: T * shape";
   return NULL;
 }

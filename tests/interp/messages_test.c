@@ -165,6 +165,8 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
       {"print \"a\" + 1", " to the text \"a\" and the number 1", "put the value into the text"},
       {"print 1 + \"a\"", " to the number 1 and the text \"a\"", "put the value into the text"},
       {"print true & false", " to true and false", "write `and`"},
+      {"print box(1) + box(2)", " to a solid and a solid", "a | b"},
+      {"print region(circle(1)) * region(circle(2))", " to a region and a region", "a & b"},
       {"print true | false", " to true and false", "write `or`"},
       {"print sphere(1) * translate(X)", " to a solid and a transform",
        "the transform comes first"},
