@@ -113,6 +113,7 @@ static CagStatus check_sense(BoolWork *w, const Operand *o) {
 typedef struct FaceTable {
   uint32_t *slots;
   size_t mask;
+  BoolList thin; // of BoolFace: those without area, which may get some when corners are merged
 } FaceTable;
 
 static void sort_corners(const uint32_t v[3], uint32_t out[3], bool *odd) {
@@ -159,17 +160,30 @@ static bool find_axis(BoolWork *w, BoolFace *f) {
   return false;
 }
 
-// Triangles without area are skipped: their neighbors are cut where they touch each other. Ends
-// early if the work is canceled.
-static void add_faces(BoolWork *w, FaceTable *table, const CagMesh *m, const uint32_t *triangles,
+// Triangles without area are kept apart: unless they get one, their neighbors are cut where they touch
+// each other.
+static bool keep_thin(FaceTable *table, const BoolFace *f) {
+  if (!cag_bool_list_reserve(&table->thin, table->thin.n + 1, sizeof *f)) return false;
+  ((BoolFace *)table->thin.items)[table->thin.n++] = *f;
+  return true;
+}
+
+static bool has_three_corners(const BoolFace *f) {
+  return f->v[0] != f->v[1] && f->v[1] != f->v[2] && f->v[2] != f->v[0];
+}
+
+// Ends early if the work is canceled. Returns false if there is no memory.
+static bool add_faces(BoolWork *w, FaceTable *table, const CagMesh *m, const uint32_t *triangles,
                       int operand) {
   for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
     BoolFace f = {.owner = (uint32_t)operand, .triangle = (uint32_t)t};
     memcpy(f.v, triangles + 3 * t, sizeof f.v);
     f.times[operand] = 1;
-    if (f.v[0] == f.v[1] || f.v[1] == f.v[2] || f.v[2] == f.v[0] || !find_axis(w, &f)) continue;
-    add_face(w, table, &f);
+    if (!has_three_corners(&f)) continue;
+    if (find_axis(w, &f)) add_face(w, table, &f);
+    else if (!keep_thin(table, &f)) return false;
   }
+  return true;
 }
 
 static CagStatus read_operand(BoolWork *w, const Operand *o, int operand, FaceTable *table) {
@@ -181,7 +195,7 @@ static CagStatus read_operand(BoolWork *w, const Operand *o, int operand, FaceTa
     triangles[i] = number[m->triangles[i]];
   if (!status) status = check_closed(w, o, triangles);
   if (!status) status = check_sense(w, o);
-  if (!status) add_faces(w, table, m, triangles, operand);
+  if (!status && !add_faces(w, table, m, triangles, operand)) status = cag_fail_memory(w->err);
   if (!status) status = cag_stop_check(w->err);
   cag_free(number);
   cag_free(triangles);
@@ -228,7 +242,7 @@ static bool replace_fans(BoolWork *w, FaceTable *table) {
   for (uint32_t i = 0; sources && i < count; i++) sources[i] = (BoolSource){i, false};
   bool done = sources != NULL;
   for (int k = 0; done && k < 2; k++) done = open_fans(w, k, sources, &parts[k], &n[k]);
-  if (done) faces = cag_malloc((count + n[0] + n[1] + 1) * sizeof *faces);
+  if (done) faces = cag_malloc((count + n[0] + n[1] + table->thin.n + 1) * sizeof *faces);
   done = faces != NULL;
   if (done) {
     memset(table->slots, 0xff, (table->mask + 1) * sizeof *table->slots);
@@ -242,8 +256,9 @@ static bool replace_fans(BoolWork *w, FaceTable *table) {
       BoolFace f = old[parts[k][i].source[0]];
       memcpy(f.v, parts[k][i].v, sizeof f.v);
       if (find_axis(w, &f)) add_face(w, table, &f);
+      else done = done && keep_thin(table, &f);
     }
-  if (done) cag_free(old);
+  if (faces) cag_free(old);
   cag_free(sources);
   cag_free(parts[0]);
   cag_free(parts[1]);
@@ -271,20 +286,33 @@ static void set_plane(BoolWork *w, BoolFace *f, const uint32_t *plane) {
   f->plane[2] = plane[1];
 }
 
+// Renumbers the corners of a face and adds it, unless it collapses.
+static bool add_renumbered(BoolWork *w, FaceTable *table, BoolFace f, const uint32_t *number,
+                           const uint32_t *plane) {
+  for (int k = 0; k < 3; k++) f.v[k] = number[f.v[k]];
+  if (!has_three_corners(&f)) return true;
+  if (!find_axis(w, &f)) return keep_thin(table, &f);
+  set_plane(w, &f, plane);
+  add_face(w, table, &f);
+  return true;
+}
+
 // Renumbers the corners; plane: for each face, or NULL. Faces that become identical are stored
-// once, those that lose their area are dropped.
-static void renumber(BoolWork *w, FaceTable *table, const uint32_t *number, const uint32_t *plane) {
+// once, those that lose their area are kept apart. Returns false if there is no memory.
+static bool renumber(BoolWork *w, FaceTable *table, const uint32_t *number, const uint32_t *plane) {
   const size_t count = w->face_count;
+  const BoolList thin = table->thin;
+  bool done = true;
   memset(table->slots, 0xff, (table->mask + 1) * sizeof *table->slots);
+  table->thin = (BoolList){0};
   w->face_count = 0;
-  for (size_t i = 0; i < count; i++) {
-    BoolFace f = w->faces[i];
-    for (int k = 0; k < 3; k++) f.v[k] = number[f.v[k]];
-    if (f.v[0] == f.v[1] || f.v[1] == f.v[2] || f.v[2] == f.v[0] || !find_axis(w, &f)) continue;
-    set_plane(w, &f, plane ? plane + 3 * i : NULL);
-    add_face(w, table, &f);
-  }
+  for (size_t i = 0; done && i < count; i++)
+    done = add_renumbered(w, table, w->faces[i], number, plane ? plane + 3 * i : NULL);
+  for (size_t i = 0; done && i < thin.n; i++)
+    done = add_renumbered(w, table, ((BoolFace *)thin.items)[i], number, NULL);
+  cag_free(thin.items);
   cag_bool_forget_pairs(w);
+  return done;
 }
 
 // Drops faces that cancel out.
@@ -297,15 +325,15 @@ static void drop_faces(BoolWork *w) {
 
 static CagStatus snap(BoolWork *w, FaceTable *table) {
   uint32_t *number = cag_malloc((w->points.n + 1) * sizeof *number);
-  uint32_t *plane = cag_malloc((3 * w->face_count + 3) * sizeof *plane);
+  uint32_t *plane = cag_malloc((3 * (w->face_count + table->thin.n) + 3) * sizeof *plane);
   bool found;
   CagStatus status = number && plane ? CAG_OK : cag_fail_memory(w->err);
   w->slack = slack_of(w);
   if (!status) status = cag_bool_find_twins(w, number, &found);
-  if (!status && found) renumber(w, table, number, NULL);
+  if (!status && found && !renumber(w, table, number, NULL)) status = cag_fail_memory(w->err);
   if (!status && found) drop_faces(w);
   if (!status) status = cag_bool_find_planes(w, number, plane, &found);
-  if (!status && found) renumber(w, table, number, plane);
+  if (!status && found && !renumber(w, table, number, plane)) status = cag_fail_memory(w->err);
   if (!status && found) drop_faces(w);
   cag_free(number);
   cag_free(plane);
@@ -320,7 +348,7 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
         w->err, CAG_E_LIMIT, CAG_ERR_mesh_too_large, o[0].argument, -1,
         "operands can have at most %lu vertices and triangles together, found %zu and %zu",
         (unsigned long)UINT32_MAX / 16, vertices, triangles);
-  FaceTable table = {NULL, 1023};
+  FaceTable table = {.mask = 1023};
   while (table.mask < 2 * triangles) table.mask = 2 * table.mask + 1;
   table.slots = cag_malloc((table.mask + 1) * sizeof *table.slots);
   w->faces = cag_malloc((triangles + 1) * sizeof *w->faces);
@@ -339,6 +367,7 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
   if (!status) status = snap(w, &table);
   w->corners = w->points.n;
   cag_free(table.slots);
+  cag_free(table.thin.items);
   return status;
 }
 
