@@ -80,21 +80,35 @@ def run(folder, script):
 def facts(folder, text):
     # The set operation itself would be measured by its mesh.
     return run(folder, HEAD % text + 'E = attempt(() => exact(G), _ => G)\nprint attempt(() => json({volume: volume(E), area: area(E), exact: "{E}", height: bounds(G).size.z, size: norm(bounds(G).size), flat: len(filter(faces_of(G), select.vertical)), '
-               'corners: len(corners_of(G)), edges: [for e in edges_of(E): {length: e.length, angle: e.angle / 1deg, bend: e.bend}]}), err => err.reason)')
+               'corners: len(corners_of(G)), edges: [for e in edges_of(E): {kind: e.kind, length: e.length, angle: e.angle / 1deg, bend: e.bend}]}), err => err.reason)')
 
 
-def section(edge, r, chamfer):
-    """The area of the section that the ball of radius r does not reach, or a chamfer takes."""
+def angle_between(edge):
+    """The angle between the faces, from 0 to pi, at the middle of the edge."""
+    return math.radians(min(edge["angle"], 360 - edge["angle"]))
+
+
+def is_even(edge):
+    """Whether the angle between the faces is the same along the edge."""
+    return edge["kind"] in ("line", "circle")
+
+
+def section(edge, r, chamfer, sharpest):
+    """The largest area of a section that the ball of radius r does not reach, or a chamfer takes."""
     if edge["bend"] == "smooth":
         return 0
-    angle = math.radians(min(edge["angle"], 360 - edge["angle"]))
+    angle = angle_between(edge)
     if chamfer:
-        return r * r / 2 * math.sin(angle)
+        return r * r / 2 * (math.sin(angle) if is_even(edge) else 1)
+    if not is_even(edge):
+        angle = min(angle, sharpest)
     return r * r * (1 / math.tan(max(angle, 0.02) / 2) - (math.pi - angle) / 2)
 
 
 def blend_bounds(known, r, chamfer):
-    most = 2 * sum(edge["length"] * section(edge, r, chamfer) for edge in known["edges"]) + 10 * r**3 * known["corners"]
+    # Where the angle varies along an edge, it is supposed to reach that of the sharpest edge of this kind.
+    sharpest = min((angle_between(edge) for edge in known["edges"] if not is_even(edge) and edge["bend"] != "smooth"), default=math.pi)
+    most = 2 * sum(edge["length"] * section(edge, r, chamfer, sharpest) for edge in known["edges"]) + 10 * r**3 * known["corners"]
     return known["volume"] - most, known["volume"] + most
 
 
