@@ -20,6 +20,7 @@
 #include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPConstruct.hxx>
+#include <STEPConstruct_ExternRefs.hxx>
 #include <STEPConstruct_Styles.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepBasic_Product.hxx>
@@ -417,6 +418,36 @@ static Colors step_colors(const Ref<XSControl_WorkSession> &session,
   return colors;
 }
 
+static bool has_faces(const TopoDS_Shape &shape) {
+  return !shape.IsNull() && TopExp_Explorer(shape, TopAbs_FACE).More();
+}
+
+// Parts in other files would be missing without notice. Files of parts that are here as well, such as
+// drawings, do not matter.
+static void refuse_other_files(const Ref<XSControl_WorkSession> &session,
+                               const Ref<Transfer_TransientProcess> &process) {
+  STEPConstruct_ExternRefs references(session);
+  std::set<std::string> files;
+  if (!references.LoadExternRefs()) return;
+  for (int i = 1; i <= references.NbExternRefs(); ++i) {
+    const char *file = references.FileName(i);
+    const Ref<StepBasic_ProductDefinition> part = references.ProdDef(i);
+    if (!file || !*file || part.IsNull()) continue;
+    if (!has_faces(TransferBRep::ShapeResult(process, part))) files.insert(file);
+  }
+  if (files.empty()) return;
+  std::string names;
+  const size_t most = 5;
+  size_t n = 0;
+  for (const std::string &file : files) {
+    if (n == most) names += " ...";
+    if (n++ >= most) break;
+    names += (names.empty() ? "`" : ", `") + file + "`";
+  }
+  throw Failure{CAG_BREP_FAIL_FILE,
+                "its parts are in other files, which must be read by themselves: " + names};
+}
+
 std::vector<Part> read_step(Reader &in) {
   const std::string path = read_path(in);
   STEPControl_Reader reader;
@@ -426,6 +457,7 @@ std::vector<Part> read_step(Reader &in) {
   const Ref<XSControl_WorkSession> session = reader.WS();
   const Ref<Transfer_TransientProcess> process = session->TransferReader()->TransientProcess();
   const Ref<Interface_InterfaceModel> model = session->Model();
+  refuse_other_files(session, process);
 
   Names solid_names, product_names;
   std::set<const void *> products;

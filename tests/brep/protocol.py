@@ -784,6 +784,58 @@ def test_seams_at_poles(h):
     assert run.returncode == 0, run.stdout
 
 
+def test_assembly_of_other_files(h):
+    """Parts that are only referred to are not left out without notice: the file names one part and the file that has it."""
+    data = """ISO-10303-21;
+HEADER;
+FILE_DESCRIPTION((''),'2;1');
+FILE_NAME('','',(''),(''),'','','');
+FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));
+ENDSEC;
+DATA;
+#1=APPLICATION_CONTEXT('automotive design');
+#2=PRODUCT_CONTEXT('',#1,'mechanical');
+#3=PRODUCT('wheel','wheel','',(#2));
+#4=PRODUCT_DEFINITION_FORMATION('','',#3);
+#5=PRODUCT_DEFINITION_CONTEXT('part definition',#1,'design');
+#6=PRODUCT_DEFINITION('','',#4,#5);
+#7=PRODUCT_DEFINITION_SHAPE('','',#6);
+#8=CARTESIAN_POINT('',(0.,0.,0.));
+#9=AXIS2_PLACEMENT_3D('',#8,$,$);
+#10=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNIT_ASSIGNED_CONTEXT((#11,#12,#13))REPRESENTATION_CONTEXT('',''));
+#11=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));
+#12=(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.));
+#13=(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT());
+#14=SHAPE_REPRESENTATION('',(#9),#10);
+#15=SHAPE_DEFINITION_REPRESENTATION(#7,#14);
+#16=DOCUMENT_TYPE('');
+#17=DOCUMENT_FILE('wheel.stp','','',#16,'','');
+#18=DOCUMENT_REPRESENTATION_TYPE('digital',#17);
+#19=PROPERTY_DEFINITION('external definition','',#17);
+#20=PROPERTY_DEFINITION_REPRESENTATION(#19,#14);
+#21=DESCRIPTIVE_REPRESENTATION_ITEM('data format','STEP AP214');
+#22=REPRESENTATION_CONTEXT('','document parameters');
+#23=REPRESENTATION('document format',(#21),#22);
+#24=PROPERTY_DEFINITION('document property','',#17);
+#25=PROPERTY_DEFINITION_REPRESENTATION(#24,#23);
+#26=EXTERNAL_SOURCE(IDENTIFIER('wheel.stp'));
+#27=IDENTIFICATION_ROLE('document source','source system');
+#28=APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT('wheel.stp',#27,#26,(#17));
+#29=APPLIED_DOCUMENT_REFERENCE(#17,'',(#6));
+#30=OBJECT_ROLE('mandatory','');
+#31=ROLE_ASSOCIATION(#30,#29);
+ENDSEC;
+END-ISO-10303-21;
+"""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "car.stp")
+        with open(path, "w") as f:
+            f.write(data)
+        failure = h.fails(READ_STEP, text(path))
+        assert failure.reason == FAIL_FILE
+        assert "`wheel.stp`" in failure.what, failure.what
+
+
 def test_damaged_files(h):
     with tempfile.TemporaryDirectory() as folder:
         for request in (READ_STEP, READ_IGES):
