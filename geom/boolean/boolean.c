@@ -172,7 +172,7 @@ static bool has_three_corners(const BoolFace *f) {
   return f->v[0] != f->v[1] && f->v[1] != f->v[2] && f->v[2] != f->v[0];
 }
 
-// Ends early if the work is canceled. Returns false if there is no memory.
+// Ends early if the work is canceled. Returns false if memory runs out.
 static bool add_faces(BoolWork *w, FaceTable *table, const CagMesh *m, const uint32_t *triangles,
                       int operand) {
   for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
@@ -297,8 +297,9 @@ static bool add_renumbered(BoolWork *w, FaceTable *table, BoolFace f, const uint
   return true;
 }
 
-// Renumbers the corners; plane: for each face, or NULL. Faces that become identical are stored
-// once, those that lose their area are kept apart. Returns false if there is no memory.
+// Renumbers the corners of all faces. plane: three numbers for each face, or NULL. Identical faces
+// become one, and faces that lose their area go to the list of thin ones. Returns false if memory
+// runs out.
 static bool renumber(BoolWork *w, FaceTable *table, const uint32_t *number, const uint32_t *plane) {
   const size_t count = w->face_count;
   const BoolList thin = table->thin;

@@ -19,6 +19,12 @@ static const char *const KINDS[] = {
 
 const char *cag_carrier_name(const CagCarrier *c) { return KINDS[c->kind]; }
 
+bool cag_carrier_apex(const CagCarrier *c, CagVec3 *out) {
+  if (c->kind != CAG_CARRIER_CONE) return false;
+  *out = cag_transform_point(&c->frame, cag_vec3(0, 0, -c->a / tan(c->b)));
+  return true;
+}
+
 bool cag_carrier_is_analytic(const CagCarrier *c) {
   return c->kind >= CAG_CARRIER_PLANE && c->kind <= CAG_CARRIER_TORUS;
 }

@@ -26,6 +26,8 @@ CagStatus cag_carrier_normal(const CagCarrier *c, double u, double v, CagVec3 *o
 const char *cag_carrier_name(const CagCarrier *c);
 // Whether the carrier is a plane, cylinder, cone, sphere, or torus.
 bool cag_carrier_is_analytic(const CagCarrier *c);
+// The apex of a cone; false for other kinds.
+bool cag_carrier_apex(const CagCarrier *c, CagVec3 *out);
 // Whether u (direction 0) or v (1) is an angle, with the period 2 pi.
 bool cag_carrier_is_periodic(const CagCarrier *c, int direction);
 // Breaks of the carrier along u (direction 0) or v (1), as for surfaces: writes up to `capacity`,

@@ -188,13 +188,18 @@ static CagStatus collect_edges(Work *w, CagError *err) {
 
 // --- Corners ---
 
-// Whether the corner is the apex of a cone, where no edges end. In a boundary that was found from a
-// mesh, only apexes have no edges.
+// Marks corners at apexes of cones, where no edges need to end. In a boundary that was found from a
+// mesh, no degenerate edges tell them, but they are computed from the cone.
 static void mark_apexes(const Work *w, bool *apex) {
   const CagBoundary *b = w->b;
-  for (size_t c = 0; b->mesh && c < b->corner_count; c++) apex[c] = true;
-  for (size_t e = 0; b->mesh && e < b->edge_count; e++)
-    apex[b->edges[e].from] = apex[b->edges[e].to] = false;
+  for (size_t i = 0; b->mesh && i < b->face_count; i++) {
+    const CagCarrier *cone = &b->faces[i].carrier;
+    CagVec3 at;
+    if (!cag_carrier_apex(cone, &at)) continue;
+    const double rounding = CAG_COINCIDENT * (cag_norm(at) + cone->a);
+    for (size_t c = 0; c < b->corner_count; c++)
+      apex[c] = apex[c] || cag_norm(cag_sub(b->corners[c], at)) <= rounding;
+  }
   for (size_t u = 0; u < b->use_count; u++) {
     const CagBoundaryEdge *e = &b->edges[b->uses[u].edge];
     if (!e->curve && b->faces[w->face_of[u]].carrier.kind == CAG_CARRIER_CONE) apex[e->from] = true;

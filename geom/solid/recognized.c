@@ -84,14 +84,6 @@ static CagStatus find_corners(Recognition *f, CagError *err) {
   return status;
 }
 
-// Whether the region's carrier is a cone, and its apex.
-static bool region_apex(const Recognition *f, uint32_t region, CagVec3 *out) {
-  const CagCarrier *c = region_carrier(f, region);
-  if (c->kind != CAG_CARRIER_CONE) return false;
-  *out = cag_transform_point(&c->frame, cag_vec3(0, 0, -c->a / tan(c->b)));
-  return true;
-}
-
 static uint32_t mesh_vertex(const CagMesh *m, size_t corner) {
   const uint32_t v = m->triangles[corner];
   return m->weld ? m->weld[v] : v;
@@ -100,28 +92,28 @@ static uint32_t mesh_vertex(const CagMesh *m, size_t corner) {
 // Adds the apexes of cones that lie inside their regions as corners without edges.
 static CagStatus add_apexes(Recognition *f, CagError *err) {
   const CagMesh *m = f->mesh;
-  // By vertices: the region whose apex it is, plus 1; OTHERS: other regions meet there, too.
-  const uint32_t OTHERS = UINT32_MAX;
+  // By vertices: the region whose apex it is, plus 1; others: other regions meet there, too.
+  const uint32_t others = UINT32_MAX;
   uint32_t *apex_of = cag_calloc(m->vertex_count + 1, sizeof *apex_of);
   CagStatus status = apex_of ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < 3 * m->triangle_count; i++) {
     const uint32_t region = f->net.region[i / 3], v = mesh_vertex(m, i);
     CagVec3 apex;
-    if (region_apex(f, region, &apex) &&
+    if (cag_carrier_apex(region_carrier(f, region), &apex) &&
         cag_norm(cag_sub(m->positions[v], apex)) <= MOVE * f->tolerance)
       apex_of[v] = region + 1;
     if (i % 1024 == 0) status = cag_stop_check(err);
   }
   for (size_t i = 0; !status && i < 3 * m->triangle_count; i++) {
     uint32_t *of = &apex_of[mesh_vertex(m, i)];
-    if (*of != 0 && *of != f->net.region[i / 3] + 1) *of = OTHERS;
+    if (*of != 0 && *of != f->net.region[i / 3] + 1) *of = others;
   }
   bool *done = cag_calloc(f->net.region_count + 1, sizeof *done);
   if (!status && !done) status = cag_fail_memory(err);
   for (size_t v = 0; !status && v < m->vertex_count; v++) {
-    if (apex_of[v] == 0 || apex_of[v] == OTHERS || done[apex_of[v] - 1]) continue;
+    if (apex_of[v] == 0 || apex_of[v] == others || done[apex_of[v] - 1]) continue;
     done[apex_of[v] - 1] = true;
-    region_apex(f, apex_of[v] - 1, &f->b.corners[f->b.corner_count++]);
+    cag_carrier_apex(region_carrier(f, apex_of[v] - 1), &f->b.corners[f->b.corner_count++]);
   }
   cag_free(apex_of);
   cag_free(done);
